@@ -1,0 +1,2 @@
+//! The `lod` command.
+fn main() {}
