@@ -3,7 +3,10 @@
 #![warn(missing_docs)]
 
 pub mod bounds;
+pub mod cull;
+pub mod frame;
 pub mod knapsack;
+pub mod rate;
 pub mod scene;
 pub mod table;
 pub mod view;

@@ -1,0 +1,189 @@
+//! Rate: from rows in view to candidates with a weight (what showing the object is worth) and the drivers of its
+//! cost.
+//!
+//! Benefit = projected area · accuracy · importance · focus · motion, in px². All of it but the accuracy is the
+//! candidate's weight; the accuracy is the level's.
+
+mod benefit;
+mod cost;
+mod levels;
+
+pub use benefit::BenefitModel;
+pub use cost::{CostModel, CostModelError, DRIVER_NAMES, DRIVERS, Drivers, Stages, drivers_of};
+pub use levels::{LevelRate, TableRates, estimated_error};
+
+use glam::Vec3;
+
+use crate::cull::VisibleBlock;
+use crate::frame::{Candidate, Candidates};
+use crate::scene::{BLOCK, Block, LevelRange, Objects, Settings};
+use crate::table::Level;
+use crate::view::Lens;
+
+/// One view of a group: its lens and what culling found in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    /// The view, made ready for this frame.
+    pub lens: &'a Lens,
+    /// Blocks in view, ascending.
+    pub visible: &'a [VisibleBlock],
+}
+
+/// What the views of a group see of one block: a column per quantity, sums and maxima over the views.
+struct Rows {
+    mask: u16,
+    area_px2: [f32; BLOCK],
+    weight: [f32; BLOCK],
+    size_px: [f32; BLOCK],
+    near_px: [f32; BLOCK],
+    views: [f32; BLOCK],
+}
+
+/// Appends the candidates of one group: the union of what its views see, slots ascending. The caller closes the run
+/// with [`Candidates::end_group`]. `cursors` is scratch.
+pub fn rate(
+    objects: &Objects,
+    rates: &TableRates,
+    views: &[Seen<'_>],
+    model: &BenefitModel,
+    cursors: &mut Vec<usize>,
+    candidates: &mut Candidates,
+) {
+    cursors.clear();
+    cursors.resize(views.len(), 0);
+    while let Some(index) = next_block(views, cursors) {
+        let block = &objects.blocks()[index as usize];
+        let mut rows = Rows::EMPTY;
+        for (seen, cursor) in views.iter().zip(cursors.iter_mut()) {
+            if let Some(found) = seen.visible.get(*cursor).filter(|v| v.block == index) {
+                *cursor += 1;
+                rows.add(objects, index, block, seen.lens, found.mask, model);
+            }
+        }
+        push_rows(objects, rates, index, block, &rows, model, candidates);
+    }
+}
+
+/// The lowest block that some view has yet to deliver.
+fn next_block(views: &[Seen<'_>], cursors: &[usize]) -> Option<u32> {
+    views.iter().zip(cursors).filter_map(|(seen, &cursor)| seen.visible.get(cursor)).map(|v| v.block).min()
+}
+
+impl Rows {
+    const EMPTY: Self = Self {
+        mask: 0,
+        area_px2: [0.0; BLOCK],
+        weight: [0.0; BLOCK],
+        size_px: [0.0; BLOCK],
+        near_px: [0.0; BLOCK],
+        views: [0.0; BLOCK],
+    };
+
+    /// Adds what one view sees. Lanes outside `mask` contribute nothing.
+    fn add(
+        &mut self,
+        objects: &Objects,
+        index: u32,
+        block: &Block,
+        lens: &Lens,
+        mask: u16,
+        model: &BenefitModel,
+    ) {
+        let mut area = project(self, block, lens, mask);
+        if !model.is_plain() {
+            for lane in lanes(mask) {
+                let velocity = match block.special & (1 << lane) {
+                    0 => Vec3::ZERO,
+                    _ => objects.settings(index as usize * BLOCK + lane).velocity,
+                };
+                area[lane] *= model.attention(lens, &block.sphere(lane), velocity);
+            }
+        }
+        for lane in 0..BLOCK {
+            self.weight[lane] += area[lane] * block.gain[lane];
+        }
+        self.mask |= mask;
+    }
+}
+
+/// The projected area of every lane of `mask`, and into `rows` what does not depend on attention. The lens's maths
+/// (see [`Lens::area_px2`], [`Lens::size_px`], [`Lens::unit_px`]), a column at a time.
+fn project(rows: &mut Rows, block: &Block, lens: &Lens, mask: u16) -> [f32; BLOCK] {
+    let mut area = [0.0; BLOCK];
+    for lane in 0..BLOCK {
+        let sphere = block.sphere(lane);
+        let seen = f32::from(mask >> lane & 1);
+        let (area_px2, size_px, near_px) = lens.project(&sphere);
+        area[lane] = area_px2 * seen;
+        rows.area_px2[lane] += area_px2 * seen;
+        rows.size_px[lane] = rows.size_px[lane].max(size_px * seen);
+        rows.near_px[lane] = rows.near_px[lane].max(near_px * seen);
+        rows.views[lane] += seen;
+    }
+    area
+}
+
+fn push_rows(
+    objects: &Objects,
+    rates: &TableRates,
+    index: u32,
+    block: &Block,
+    rows: &Rows,
+    model: &BenefitModel,
+    candidates: &mut Candidates,
+) {
+    for lane in lanes(rows.mask) {
+        let slot = index * BLOCK as u32 + lane as u32;
+        let table = block.table[lane];
+        let levels = rates.levels(table);
+        let mut candidate = Candidate {
+            slot,
+            table,
+            allowed: LevelRange { finest: Level::FINEST, coarsest: Level((levels.len() - 1) as u8) },
+            weight: rows.weight[lane],
+            cost_scale: rows.views[lane],
+            size_px: rows.size_px[lane],
+            near_px: rows.near_px[lane],
+            area_px2: rows.area_px2[lane],
+        };
+        if block.special & (1 << lane) != 0 {
+            heed(&mut candidate, objects.settings(slot as usize), levels.len());
+        }
+        if model.enough_px > 0.0 {
+            spare(&mut candidate, levels, model.enough_px);
+        }
+        candidates.push(candidate);
+    }
+}
+
+/// What the settings of a special object change. Its bias is in the weight already.
+fn heed(candidate: &mut Candidate, settings: &Settings, levels: usize) {
+    candidate.allowed = settings.allowed(levels);
+    if settings.may_skip && settings.forced.is_none() {
+        candidate.allowed.coarsest = Level::NOT_DRAWN;
+    }
+    candidate.cost_scale *= settings.cost_multiplier;
+    candidate.area_px2 *= settings.cost_multiplier;
+    candidate.size_px *= settings.bias;
+    candidate.near_px *= settings.bias;
+}
+
+/// Takes away the levels that are finer than the coarsest one whose projected error is small enough.
+fn spare(candidate: &mut Candidate, levels: &[LevelRate], enough_px: f32) {
+    let last = candidate.allowed.coarsest.index().min(levels.len() - 1);
+    let finest = candidate.allowed.finest.index();
+    let enough = (finest..=last).rev().find(|&l| levels[l].error * candidate.near_px <= enough_px);
+    candidate.allowed.finest = Level(enough.unwrap_or(finest) as u8);
+}
+
+/// The positions of the bits of `mask`, ascending.
+pub(crate) fn lanes(mask: u16) -> impl Iterator<Item = usize> {
+    let mut rest = mask;
+    std::iter::from_fn(move || {
+        let lane = rest.trailing_zeros() as usize;
+        (rest != 0).then(|| {
+            rest &= rest - 1;
+            lane
+        })
+    })
+}
