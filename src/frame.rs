@@ -1,5 +1,7 @@
 //! What passes between the stages of a frame. Sizes are in pixels (`_px`, `_px2`), times in microseconds (`_us`).
 
+use std::fmt;
+
 use crate::scene::{LevelRange, ObjectId};
 use crate::table::Level;
 
@@ -62,12 +64,14 @@ pub struct Candidates {
 }
 
 /// The end of a group's run in [`Candidates`]; it starts where the run before it ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroupEnd {
     /// The group.
     pub group: GroupId,
     /// One past its last candidate.
     pub end: usize,
+    /// Height of the viewport of the group's first view.
+    pub height_px: f32,
 }
 
 impl Candidates {
@@ -124,9 +128,9 @@ impl Candidates {
         }
     }
 
-    /// Closes the run of `group`.
-    pub fn end_group(&mut self, group: GroupId) {
-        self.ends.push(GroupEnd { group, end: self.len() });
+    /// Closes the run of `group`, whose first view is `height_px` high.
+    pub fn end_group(&mut self, group: GroupId, height_px: f32) {
+        self.ends.push(GroupEnd { group, end: self.len(), height_px });
     }
 
     /// The group that candidate `i` belongs to.
@@ -135,16 +139,15 @@ impl Candidates {
         self.ends.get(run).map_or(GroupId(0), |g| g.group)
     }
 
-    /// The candidates of a group; empty for a group that is not in this frame.
-    pub fn range(&self, group: GroupId) -> std::ops::Range<usize> {
-        match self.ends.binary_search_by_key(&group, |g| g.group) {
-            Ok(run) => self.start_of(run)..self.ends[run].end,
-            Err(_) => 0..0,
-        }
+    /// The groups of this frame and their candidates.
+    pub fn groups(&self) -> impl Iterator<Item = (GroupEnd, std::ops::Range<usize>)> + '_ {
+        let starts = std::iter::once(0).chain(self.ends.iter().map(|g| g.end));
+        self.ends.iter().zip(starts).map(|(&group, start)| (group, start..group.end))
     }
 
-    fn start_of(&self, run: usize) -> usize {
-        run.checked_sub(1).map_or(0, |before| self.ends[before].end)
+    /// The candidates of a group; empty for a group that is not in this frame.
+    pub fn range(&self, group: GroupId) -> std::ops::Range<usize> {
+        self.groups().find(|(g, _)| g.group == group).map_or(0..0, |(_, range)| range)
     }
 }
 
@@ -183,9 +186,11 @@ impl FrameTime {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Budget {
     /// The time that the caller gives the frame.
-    pub frame_us: f32,
-    /// What the selection may spend by the cost model: the frame's budget less headroom and fades in flight, divided
-    /// by how much slower the machine has shown to be than the model says.
+    pub frame_us: f64,
+    /// The time to aim at: the frame's less headroom.
+    pub target_us: f64,
+    /// What the selection may spend by the cost model: the target less the fades in flight, divided by how much slower
+    /// the machine has shown to be than the model says.
     pub select_us: f64,
 }
 
@@ -200,6 +205,17 @@ pub struct Certificate {
     pub penalised_gap: f64,
     /// The multiplier λ: what a microsecond is worth in px² where the budget ends; 0 when everything fits.
     pub lambda: f64,
+}
+
+/// What is known of the time that frames take.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Timing {
+    /// Measured time after the filter; 0 until there is one.
+    pub filtered_us: f64,
+    /// Measurements that entered the filter since the last frame: hitches and paused frames do not.
+    pub fresh: usize,
+    /// The newest measurement says no more than that the frame fits its display interval.
+    pub censored: bool,
 }
 
 /// What a selector reports about a frame.
@@ -287,3 +303,27 @@ pub struct Change {
     /// Why not finer.
     pub cause: Cause,
 }
+
+/// Why options were refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OptionsError {
+    /// The option.
+    pub option: &'static str,
+    /// The rule it breaks.
+    pub rule: &'static str,
+}
+
+impl OptionsError {
+    /// `Ok` when `holds`, else an error that states `rule`.
+    pub(crate) fn unless(holds: bool, option: &'static str, rule: &'static str) -> Result<(), OptionsError> {
+        if holds { Ok(()) } else { Err(OptionsError { option, rule }) }
+    }
+}
+
+impl fmt::Display for OptionsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "option {}: {}", self.option, self.rule)
+    }
+}
+
+impl std::error::Error for OptionsError {}

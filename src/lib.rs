@@ -4,11 +4,15 @@
 
 pub mod bounds;
 pub mod cull;
+pub mod feedback;
 pub mod frame;
 pub mod knapsack;
 pub mod rate;
+pub mod runtime;
 pub mod scene;
+pub mod select;
 pub mod table;
+pub mod transition;
 pub mod view;
 
 #[cfg(feature = "files")]

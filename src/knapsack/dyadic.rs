@@ -48,17 +48,12 @@ impl Grid {
             return Self { unit: 0, bits: 2 };
         }
         let carry = usize::BITS - terms.leading_zeros();
-        Self {
-            unit,
-            bits: (top - unit) as u32 + carry + 1,
-        }
+        Self { unit, bits: (top - unit) as u32 + carry + 1 }
     }
 }
 
 /// An integer wide enough for the sums of one instance. Values are counted in units of `2^unit`.
-pub(crate) trait Number:
-    Copy + Ord + Debug + Add<Output = Self> + Sub<Output = Self>
-{
+pub(crate) trait Number: Copy + Ord + Debug + Add<Output = Self> + Sub<Output = Self> {
     /// The sum of nothing.
     const ZERO: Self;
 
@@ -143,10 +138,7 @@ impl<const N: usize> Wide<N> {
         let mut words = [0; N];
         for (i, piece) in pieces.into_iter().enumerate() {
             let spread = u128::from(piece) << bit;
-            for (j, half) in [spread as u64, (spread >> 64) as u64]
-                .into_iter()
-                .enumerate()
-            {
+            for (j, half) in [spread as u64, (spread >> 64) as u64].into_iter().enumerate() {
                 if let Some(target) = words.get_mut(word + i + j) {
                     *target |= half;
                 }
@@ -219,12 +211,7 @@ impl<const N: usize> Number for Wide<N> {
         if self.is_negative() {
             return -self.negated().to_f64(unit);
         }
-        let top = self
-            .words
-            .iter()
-            .rposition(|&word| word != 0)
-            .unwrap_or(0)
-            .max(1);
+        let top = self.words.iter().rposition(|&word| word != 0).unwrap_or(0).max(1);
         let leading = u128::from(self.words[top]) << 64 | u128::from(self.words[top - 1]);
         // A word of the 128 leading bits may be nearly empty, but 65 of them are not: one more bit stands for all below.
         let rest = self.words[..top - 1].iter().any(|&word| word != 0);

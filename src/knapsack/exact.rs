@@ -27,21 +27,11 @@ struct State<T> {
     item: u32,
 }
 
-fn search<T: Number>(
-    ledger: &Ledger<'_, T>,
-    quick: Solution,
-    stop: &mut dyn FnMut() -> bool,
-) -> Solution {
+fn search<T: Number>(ledger: &Ledger<'_, T>, quick: Solution, stop: &mut dyn FnMut() -> bool) -> Solution {
     let start = cheapest(ledger.instance);
     let mut rest = ledger.totals(&start).cost;
-    let mut layers = vec![vec![State {
-        totals: Totals {
-            cost: T::ZERO,
-            benefit: T::ZERO,
-        },
-        parent: 0,
-        item: 0,
-    }]];
+    let mut layers =
+        vec![vec![State { totals: Totals { cost: T::ZERO, benefit: T::ZERO }, parent: 0, item: 0 }]];
     for (class, items) in ledger.instance.classes().enumerate() {
         if stop() {
             return quick;
@@ -55,20 +45,11 @@ fn search<T: Number>(
                     benefit: state.totals.benefit + ledger.benefit(amounts),
                 };
                 if totals.cost + rest <= ledger.budget {
-                    next.push(State {
-                        totals,
-                        parent: parent as u32,
-                        item: item as u32,
-                    });
+                    next.push(State { totals, parent: parent as u32, item: item as u32 });
                 }
             }
         }
-        next.sort_by(|a, b| {
-            a.totals
-                .cost
-                .cmp(&b.totals.cost)
-                .then(b.totals.benefit.cmp(&a.totals.benefit))
-        });
+        next.sort_by(|a, b| a.totals.cost.cmp(&b.totals.cost).then(b.totals.benefit.cmp(&a.totals.benefit)));
         let mut best = None;
         next.retain(|state| {
             let better = best.is_none_or(|best| state.totals.benefit > best);

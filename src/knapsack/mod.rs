@@ -46,7 +46,10 @@ mod instance;
 #[cfg(feature = "files")]
 mod json;
 mod ledger;
+mod profiles;
+mod shared;
 mod solution;
+mod sum;
 
 pub use exact::exact;
 pub use greedy::greedy;
@@ -54,4 +57,7 @@ pub use hull::{Step, compare_slopes, upper_hull, upper_hull_of};
 pub use instance::{Instance, InstanceError, Item};
 #[cfg(feature = "files")]
 pub use json::InstanceFileError;
+pub use profiles::{Position, ProfileItem, Profiles};
+pub use shared::{Classes, Outcome, SharedKnapsack};
 pub use solution::Solution;
+pub use sum::FixedSum;

@@ -1,6 +1,7 @@
 //! What drawing is worth: projected area, weighted by importance, focus and motion.
 
 use crate::bounds::Sphere;
+use crate::frame::OptionsError;
 use crate::view::Lens;
 use glam::Vec3;
 
@@ -28,6 +29,17 @@ impl Default for BenefitModel {
 }
 
 impl BenefitModel {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// Names the option that is negative or not finite.
+    pub fn check(&self) -> Result<(), OptionsError> {
+        let valid = |x: f32| x.is_finite() && x >= 0.0;
+        OptionsError::unless(valid(self.focus), "focus", "must be finite and not negative")?;
+        OptionsError::unless(valid(self.motion), "motion", "must be finite and not negative")?;
+        OptionsError::unless(valid(self.enough_px), "enough_px", "must be finite and not negative")
+    }
+
     /// Whether the factor of [`BenefitModel::attention`] can differ from 1.
     pub fn is_plain(&self) -> bool {
         self.focus == 0.0 && self.motion == 0.0

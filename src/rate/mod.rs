@@ -20,13 +20,28 @@ use crate::scene::{BLOCK, Block, LevelRange, Objects, Settings};
 use crate::table::Level;
 use crate::view::Lens;
 
-/// One view of a group: its lens and what culling found in it.
-#[derive(Clone, Copy, Debug)]
-pub struct Seen<'a> {
+/// One view of a group.
+#[derive(Clone, Debug)]
+pub struct Seen {
     /// The view, made ready for this frame.
-    pub lens: &'a Lens,
-    /// Blocks in view, ascending.
-    pub visible: &'a [VisibleBlock],
+    pub lens: Lens,
+    /// What culling found in it: blocks ascending.
+    pub visible: Vec<VisibleBlock>,
+}
+
+/// Predicted time of candidate `i` at `level`; 0 when not drawn.
+pub fn cost_us(
+    model: &CostModel,
+    rates: &TableRates,
+    candidates: &Candidates,
+    i: usize,
+    level: Level,
+) -> f64 {
+    if !level.is_drawn() {
+        return 0.0;
+    }
+    let geometry_us = rates.geometry_us(candidates.table[i], level);
+    model.object_us(geometry_us, f64::from(candidates.cost_scale[i]), f64::from(candidates.area_px2[i]))
 }
 
 /// What the views of a group see of one block: a column per quantity, sums and maxima over the views.
@@ -44,7 +59,7 @@ struct Rows {
 pub fn rate(
     objects: &Objects,
     rates: &TableRates,
-    views: &[Seen<'_>],
+    views: &[Seen],
     model: &BenefitModel,
     cursors: &mut Vec<usize>,
     candidates: &mut Candidates,
@@ -57,7 +72,7 @@ pub fn rate(
         for (seen, cursor) in views.iter().zip(cursors.iter_mut()) {
             if let Some(found) = seen.visible.get(*cursor).filter(|v| v.block == index) {
                 *cursor += 1;
-                rows.add(objects, index, block, seen.lens, found.mask, model);
+                rows.add(objects, index, block, &seen.lens, found.mask, model);
             }
         }
         push_rows(objects, rates, index, block, &rows, model, candidates);
@@ -65,7 +80,7 @@ pub fn rate(
 }
 
 /// The lowest block that some view has yet to deliver.
-fn next_block(views: &[Seen<'_>], cursors: &[usize]) -> Option<u32> {
+fn next_block(views: &[Seen], cursors: &[usize]) -> Option<u32> {
     views.iter().zip(cursors).filter_map(|(seen, &cursor)| seen.visible.get(cursor)).map(|v| v.block).min()
 }
 

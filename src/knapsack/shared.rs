@@ -1,0 +1,583 @@
+//! The greedy for classes that share hulls: what a frame loop can afford.
+//!
+//! The textbook greedy sorts every step of every class by slope and takes steps while they fit. Nearly all of that
+//! order is wasted: a step matters only near the slope λ where the budget ends. So λ is *bracketed* first, from the last
+//! call's λ or from a histogram over the bits of the slopes (positive floats sort as their bits); classes take all their
+//! steps above the bracket without comparison, and only the steps inside it are sorted. The answer is that of the
+//! textbook, whatever the bracket was.
+//!
+//! The objective can price switching: the steps of a class up to its current position count (1 + stay) times, the steps
+//! beyond it (1 − stay) times. That keeps slopes falling along each hull, so the greedy and its bound hold for the
+//! priced objective; the certificate of the plain one is computed beside it.
+
+use super::profiles::{Position, ProfileItem, Profiles, position_at};
+use super::sum::FixedSum;
+
+/// The classes of one call, column by column.
+#[derive(Clone, Debug, Default)]
+pub struct Classes {
+    /// Number of the profile in [`SharedKnapsack::profiles`].
+    pub profile: Vec<u32>,
+    /// Factor on the profile's values, finite and ≥ 0.
+    pub weight: Vec<f32>,
+    /// Factor on the profile's ticks, finite and > 0.
+    pub scale: Vec<f32>,
+    /// Position on the hull that the class holds now.
+    pub current: Vec<u8>,
+    /// Price of switching, in 0…1 (exclusive): 0 for none.
+    pub stay: Vec<f32>,
+}
+
+impl Classes {
+    /// Forgets all classes and keeps the memory.
+    pub fn clear(&mut self) {
+        self.profile.clear();
+        self.weight.clear();
+        self.scale.clear();
+        self.current.clear();
+        self.stay.clear();
+    }
+
+    /// How many classes there are.
+    pub fn len(&self) -> usize {
+        self.profile.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.profile.is_empty()
+    }
+}
+
+/// How good a choice is. Costs are in ticks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// Cost of the choice.
+    pub cost: u64,
+    /// By how much the cheapest choice exceeds the budget; 0 when it fits.
+    pub shortfall: u64,
+    /// Benefit of the choice.
+    pub benefit: f64,
+    /// Benefit of the cheapest choice.
+    pub minimum_benefit: f64,
+    /// No choice within the budget has more benefit.
+    pub upper_bound: f64,
+    /// Benefit of the choice with switching priced in.
+    pub priced_benefit: f64,
+    /// No choice within the budget has more priced benefit.
+    pub priced_bound: f64,
+    /// Benefit per tick where the budget ends; 0 when everything fits.
+    pub lambda: f64,
+    /// Steps that were compared one by one.
+    pub steps: usize,
+}
+
+/// Solver with its scratch and the memory of the last λ. Fill `profiles` and `classes`, call
+/// [`SharedKnapsack::solve`], read `chosen`.
+#[derive(Clone, Debug, Default)]
+pub struct SharedKnapsack {
+    /// The hulls.
+    pub profiles: Profiles,
+    /// The classes. Solving may change the profiles and current positions of classes; fill them anew for each call.
+    pub classes: Classes,
+    /// The answer: the code of the chosen item of each class.
+    pub chosen: Vec<u8>,
+    choice: Vec<u8>,
+    bracket: Bracket,
+    undecided: Vec<Undecided>,
+    blocked: Vec<bool>,
+    histogram: Vec<u64>,
+    rival: Vec<u8>,
+    affordable: Vec<ProfileItem>,
+}
+
+/// Where the last λ was and how far around it to look.
+#[derive(Clone, Copy, Debug)]
+struct Bracket {
+    lambda: f32,
+    width: f32,
+}
+
+impl Default for Bracket {
+    fn default() -> Self {
+        Self { lambda: 0.0, width: *WIDTH.start() }
+    }
+}
+
+/// A step inside the bracket.
+#[derive(Clone, Copy, Debug)]
+struct Undecided {
+    slope: f32,
+    class: u32,
+    from: u8,
+}
+
+/// Costs over all classes at the ends of a bracket, and of the cheapest and the best choice.
+#[derive(Clone, Copy, Debug, Default)]
+struct Survey {
+    cheapest: u64,
+    best: u64,
+    above: u64,
+    down_to: u64,
+    /// The most that one class can cost beyond its cheapest position.
+    widest: u64,
+    /// The lower end of the bracket.
+    low: f32,
+}
+
+/// A class held at a position, whatever its slope.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Pin {
+    class: usize,
+    position: u8,
+}
+
+/// Where the greedy stopped: the first step that did not fit.
+#[derive(Clone, Copy, Debug, Default)]
+struct Critical {
+    lambda: f32,
+    step: Option<Pin>,
+    steps: usize,
+}
+
+/// Bracket widths around the last λ, as fractions: narrower means fewer steps to sort, wider fewer misses. A miss costs
+/// a pass for the histogram and one for the survey.
+const WIDTH: std::ops::RangeInclusive<f32> = 0.01..=0.1;
+
+/// Histogram buckets: the 12 highest of the 31 bits of a positive float, so that a bucket spans at most 1/16 of its
+/// slope. More buckets leave the first-level cache, fewer leave more steps to sort.
+const BUCKETS: usize = 1 << 12;
+const BUCKET_SHIFT: u32 = 31 - 12;
+
+/// The fill looks for steps down to these fractions of the critical slope, a pass each. Closer windows find the better
+/// steps first where many would fit, and cost more passes.
+const FILL_WINDOWS: [f32; 8] = [0.95, 0.8, 0.5, 0.2, 0.05, 0.01, 0.001, 0.0];
+
+/// The fill stops when less than this fraction of the budget is left: it would buy less than looking costs.
+const FILL_ENOUGH: u64 = 1 << 17;
+
+/// Above this relative gap the rival choice, critical step first, is tried as well.
+const RIVAL_GAP: f64 = 1e-3;
+
+impl SharedKnapsack {
+    /// Chooses an item for every class: at least half of the attainable priced benefit beyond the cheapest choice, and
+    /// nearly all of it where steps are small against the budget. `key` breaks ties between equal slopes, the lower
+    /// first; it must be unique per class.
+    ///
+    /// The ½ follows Kellerer, Pferschy and Pisinger, *Knapsack Problems*, 2004, ch. 11: items that do not fit beside the
+    /// cheapest of all others are dropped before hulls are made, and the rival that takes the critical step first is
+    /// tried where it could win.
+    ///
+    /// Time: O(positions) and a sort of the steps inside the bracket. Allocates only to grow its scratch.
+    pub fn solve(&mut self, budget: u64, key: impl Fn(usize) -> u128) -> Outcome {
+        let shared = self.profiles.len();
+        self.choice.clear();
+        self.choice.resize(self.classes.len(), 0);
+        let outcome = self.choose(budget, &key);
+        self.chosen.clear();
+        for i in 0..self.classes.len() {
+            self.chosen.push(self.class(i).positions[usize::from(self.choice[i])].item);
+        }
+        self.profiles.truncate(shared);
+        outcome
+    }
+
+    /// Forgets the last λ: the next call starts from the histogram.
+    pub fn forget(&mut self) {
+        self.bracket = Bracket::default();
+    }
+
+    fn choose(&mut self, budget: u64, key: &impl Fn(usize) -> u128) -> Outcome {
+        let mut survey = self.survey(self.warm_bracket(), None);
+        if survey.cheapest > budget {
+            self.choice.fill(0);
+            let shortfall = survey.cheapest - budget;
+            return Outcome { shortfall, ..self.certify(budget, 0.0) };
+        }
+        if survey.best <= budget {
+            self.take_all();
+            return self.certify(budget, 0.0);
+        }
+        if survey.widest > budget - survey.cheapest {
+            self.drop_unaffordable(budget - survey.cheapest);
+            survey = self.survey(self.warm_bracket(), None);
+        }
+        let critical = self.greedy(survey, budget, None, key);
+        self.bracket.lambda = critical.lambda;
+        let outcome = Outcome { steps: critical.steps, ..self.certify(budget, critical.lambda) };
+        match critical.step {
+            Some(step) if outcome.priced_gap() > RIVAL_GAP => self.better_of(outcome, step, budget, key),
+            _ => outcome,
+        }
+    }
+
+    fn class(&self, i: usize) -> Class<'_> {
+        Class::new(&self.profiles, &self.classes, i)
+    }
+
+    /// The bracket around the last λ; an empty one at the top when there is none.
+    fn warm_bracket(&self) -> [f32; 2] {
+        let Bracket { lambda, width } = self.bracket;
+        if lambda > 0.0 {
+            [(lambda * (1.0 - width)).max(f32::MIN_POSITIVE), lambda * (1.0 + width)]
+        } else {
+            [f32::MAX; 2]
+        }
+    }
+
+    /// One pass: every class takes its steps at or above the bracket's upper end into `choice`, its steps inside go to
+    /// `undecided`, and the costs are summed.
+    fn survey(&mut self, [low, high]: [f32; 2], pin: Option<Pin>) -> Survey {
+        let mut survey = Survey { low, ..Survey::default() };
+        self.undecided.clear();
+        for i in 0..self.classes.len() {
+            let class = Class::new(&self.profiles, &self.classes, i);
+            let (above, down_to) = match pin.filter(|p| p.class == i) {
+                Some(pin) => (pin.position, pin.position),
+                None => {
+                    let above = class.walk(0, high);
+                    (above, class.walk(above, low))
+                }
+            };
+            self.choice[i] = above;
+            for from in above..down_to {
+                self.undecided.push(Undecided { slope: class.slope(from), class: i as u32, from });
+            }
+            let (cheapest, best) = (class.cost(0), class.cost(class.last()));
+            survey.cheapest += cheapest;
+            survey.best += best;
+            survey.widest = survey.widest.max(best - cheapest);
+            survey.above += class.cost(above);
+            survey.down_to += class.cost(down_to);
+        }
+        survey
+    }
+
+    fn take_all(&mut self) {
+        for i in 0..self.classes.len() {
+            self.choice[i] = self.class(i).last();
+        }
+    }
+
+    /// Gives every class that has an item costing more than `room` beyond its cheapest one a profile without such
+    /// items. They could never be chosen, and a hull through them would hide the ones that can.
+    fn drop_unaffordable(&mut self, room: u64) {
+        for i in 0..self.classes.len() {
+            let class = Class::new(&self.profiles, &self.classes, i);
+            if class.cost(class.last()) - class.cost(0) <= room {
+                continue;
+            }
+            let limit = class.cost(0).saturating_add(room);
+            let scale = class.scale;
+            let held = class.positions[usize::from(self.classes.current[i].min(class.last()))].ticks;
+            self.affordable.clear();
+            let items = self.profiles.items(self.classes.profile[i]).iter();
+            self.affordable.extend(items.filter(|item| scaled(item.ticks, scale) <= limit));
+            let narrowed = self.profiles.push(&self.affordable);
+            self.classes.profile[i] = narrowed;
+            self.classes.current[i] = position_at(self.profiles.positions(narrowed), held);
+        }
+    }
+
+    /// The textbook greedy, given a survey: makes sure that the bracket holds the budget, takes the steps inside it in
+    /// order while they fit, and fills what is left.
+    fn greedy(
+        &mut self,
+        survey: Survey,
+        budget: u64,
+        pin: Option<Pin>,
+        key: &impl Fn(usize) -> u128,
+    ) -> Critical {
+        let survey = self.bracketed(survey, budget, pin);
+        self.blocked.clear();
+        self.blocked.resize(self.classes.len(), false);
+        if let Some(pin) = pin {
+            self.blocked[pin.class] = true;
+        }
+        let mut critical = Critical::default();
+        let mut room = budget - survey.above;
+        self.take(&mut room, &mut critical, key);
+        self.fill(budget, room, survey.low, &mut critical, key);
+        critical
+    }
+
+    /// The survey if the budget lies inside its bracket, else one of the histogram's bracket.
+    fn bracketed(&mut self, survey: Survey, budget: u64, pin: Option<Pin>) -> Survey {
+        let hit = survey.above <= budget && budget < survey.down_to;
+        let width = self.bracket.width * if hit { 0.9 } else { 4.0 };
+        self.bracket.width = width.clamp(*WIDTH.start(), *WIDTH.end());
+        if hit {
+            return survey;
+        }
+        let bracket = self.cold_bracket(budget, pin);
+        self.survey(bracket, pin)
+    }
+
+    /// The bucket of slopes where the budget ends, from a histogram of step costs. Where all steps of a positive slope
+    /// fit, the bracket is empty and below them.
+    fn cold_bracket(&mut self, budget: u64, pin: Option<Pin>) -> [f32; 2] {
+        self.histogram.clear();
+        self.histogram.resize(BUCKETS, 0);
+        let mut spent = 0;
+        for i in 0..self.classes.len() {
+            let class = Class::new(&self.profiles, &self.classes, i);
+            if let Some(pin) = pin.filter(|p| p.class == i) {
+                spent += class.cost(pin.position);
+                continue;
+            }
+            spent += class.cost(0);
+            for from in 0..class.last() {
+                let bucket = class.slope(from).to_bits() >> BUCKET_SHIFT;
+                self.histogram[bucket as usize] += class.cost(from + 1) - class.cost(from);
+            }
+        }
+        let critical = (0..BUCKETS).rev().find(|&bucket| {
+            spent += self.histogram[bucket];
+            spent > budget
+        });
+        let edge = |bucket: usize| f32::from_bits((bucket as u32) << BUCKET_SHIFT).max(f32::MIN_POSITIVE);
+        critical.map_or([f32::MIN_POSITIVE; 2], |bucket| [edge(bucket), edge(bucket + 1)])
+    }
+
+    /// Takes undecided steps in order of slope while they fit; a class whose step does not fit takes no later one.
+    fn take(&mut self, room: &mut u64, critical: &mut Critical, key: &impl Fn(usize) -> u128) {
+        self.undecided.sort_unstable_by(|a, b| {
+            b.slope
+                .total_cmp(&a.slope)
+                .then_with(|| key(a.class as usize).cmp(&key(b.class as usize)))
+                .then(a.from.cmp(&b.from))
+        });
+        critical.steps += self.undecided.len();
+        for step in &self.undecided {
+            let i = step.class as usize;
+            if self.blocked[i] {
+                continue;
+            }
+            let class = Class::new(&self.profiles, &self.classes, i);
+            let cost = class.cost(step.from + 1) - class.cost(step.from);
+            if cost <= *room {
+                *room -= cost;
+                self.choice[i] = step.from + 1;
+            } else {
+                self.blocked[i] = true;
+                if critical.step.is_none() {
+                    critical.step = Some(Pin { class: i, position: step.from + 1 });
+                    critical.lambda = step.slope;
+                }
+            }
+        }
+    }
+
+    /// Spends what is left on steps below the bracket, best first.
+    fn fill(
+        &mut self,
+        budget: u64,
+        mut room: u64,
+        bracket_low: f32,
+        critical: &mut Critical,
+        key: &impl Fn(usize) -> u128,
+    ) {
+        for window in FILL_WINDOWS {
+            if room <= budget / FILL_ENOUGH {
+                break;
+            }
+            let low = (bracket_low * window).max(f32::MIN_POSITIVE);
+            if !self.gather(low, room) {
+                break;
+            }
+            self.take(&mut room, critical, key);
+        }
+    }
+
+    /// Collects the untaken steps of slope `low` or more that fit by themselves. False when no class has a step left.
+    fn gather(&mut self, low: f32, room: u64) -> bool {
+        self.undecided.clear();
+        let mut open = false;
+        for i in 0..self.classes.len() {
+            let class = Class::new(&self.profiles, &self.classes, i);
+            let mut from = self.choice[i];
+            while !self.blocked[i] && class.slope(from) >= low {
+                self.blocked[i] = class.cost(from + 1) - class.cost(from) > room;
+                if !self.blocked[i] {
+                    self.undecided.push(Undecided { slope: class.slope(from), class: i as u32, from });
+                    from += 1;
+                }
+            }
+            open |= !self.blocked[i] && from < class.last();
+        }
+        open || !self.undecided.is_empty()
+    }
+
+    /// Tries the choice that takes the critical step first, and keeps the better one.
+    fn better_of(&mut self, found: Outcome, step: Pin, budget: u64, key: &impl Fn(usize) -> u128) -> Outcome {
+        self.rival.clone_from(&self.choice);
+        let survey = self.survey([f32::MAX; 2], Some(step));
+        let critical = self.greedy(survey, budget, Some(step), key);
+        let rival = self.certify(budget, critical.lambda);
+        let steps = found.steps + critical.steps;
+        if rival.priced_benefit > found.priced_benefit {
+            let Outcome { upper_bound, priced_bound, lambda, .. } = found;
+            return Outcome { upper_bound, priced_bound, lambda, steps, ..rival };
+        }
+        std::mem::swap(&mut self.rival, &mut self.choice);
+        Outcome { steps, ..found }
+    }
+
+    /// Sums up the choice and bounds every choice within the budget from above: for any λ ≥ 0, Σ max(benefit − λ·cost) +
+    /// λ·budget is no less than the optimum. All in double precision, rounded outwards.
+    fn certify(&self, budget: u64, lambda: f32) -> Outcome {
+        let mut sums = Sums::default();
+        let lambda = f64::from(lambda);
+        for i in 0..self.classes.len() {
+            sums.add(&self.class(i), self.choice[i], lambda);
+        }
+        sums.outcome(budget, lambda, self.classes.len())
+    }
+}
+
+impl Outcome {
+    /// (bound − benefit) ÷ (bound − benefit of the cheapest choice), of the plain benefit.
+    pub fn gap(&self) -> f64 {
+        relative_gap(self.upper_bound, self.benefit, self.minimum_benefit)
+    }
+
+    /// The same of the priced benefit, which is what the choice maximises.
+    pub fn priced_gap(&self) -> f64 {
+        relative_gap(self.priced_bound, self.priced_benefit, self.minimum_benefit)
+    }
+}
+
+fn relative_gap(bound: f64, benefit: f64, least: f64) -> f64 {
+    let attainable = bound - least;
+    if attainable > 0.0 { ((bound - benefit) / attainable).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// One class with its hull at hand.
+struct Class<'a> {
+    positions: &'a [Position],
+    weight: f32,
+    scale: f32,
+    /// Weight per scale: what turns the profile's slopes into the class's.
+    rate: f32,
+    current: u8,
+    stay: f32,
+}
+
+impl<'a> Class<'a> {
+    fn new(profiles: &'a Profiles, classes: &Classes, i: usize) -> Self {
+        let (weight, scale) = (classes.weight[i], classes.scale[i]);
+        Self {
+            positions: profiles.positions(classes.profile[i]),
+            weight,
+            scale,
+            rate: weight / scale,
+            current: classes.current[i],
+            stay: classes.stay[i],
+        }
+    }
+
+    fn last(&self) -> u8 {
+        (self.positions.len() - 1) as u8
+    }
+
+    fn cost(&self, position: u8) -> u64 {
+        scaled(self.positions[usize::from(position)].ticks, self.scale)
+    }
+
+    /// Priced benefit per tick of the step from `position` to the next; 0 at the last.
+    fn slope(&self, position: u8) -> f32 {
+        let price = if position < self.current { 1.0 + self.stay } else { 1.0 - self.stay };
+        self.rate * self.positions[usize::from(position)].next_slope * price
+    }
+
+    /// The position reached from `position` by steps of slope λ or more, λ > 0.
+    fn walk(&self, mut position: u8, lambda: f32) -> u8 {
+        while self.slope(position) >= lambda {
+            position += 1;
+        }
+        position
+    }
+
+    /// Benefit at a position, with switching priced in: what lies up to the current position counts more, what lies
+    /// beyond it less.
+    fn priced(&self, position: u8) -> f64 {
+        let value = |p: u8| f64::from(self.positions[usize::from(p)].value);
+        let held = value(position.min(self.current.min(self.last()))) - value(0);
+        let beyond = value(position) - value(0) - held;
+        let stay = f64::from(self.stay);
+        f64::from(self.weight) * (value(0) + (1.0 + stay) * held + (1.0 - stay) * beyond)
+    }
+
+    fn plain(&self, position: u8) -> f64 {
+        f64::from(self.weight) * f64::from(self.positions[usize::from(position)].value)
+    }
+
+    /// The position that maximises benefit − λ·cost: on a hull, where the first step stops paying.
+    fn best(&self, lambda: f64, benefit: impl Fn(&Self, u8) -> f64) -> u8 {
+        let pays = |p: u8| {
+            let cost = (self.cost(p + 1) - self.cost(p)) as f64;
+            benefit(self, p + 1) - benefit(self, p) >= lambda * cost
+        };
+        (0..self.last()).take_while(|&p| pays(p)).last().map_or(0, |p| p + 1)
+    }
+}
+
+/// Ticks times scale, rounded up.
+fn scaled(ticks: u64, scale: f32) -> u64 {
+    if scale == 1.0 {
+        return ticks;
+    }
+    let product = ticks as f64 * f64::from(scale);
+    let floor = product as u64;
+    floor + u64::from((floor as f64) < product)
+}
+
+/// The sums behind an [`Outcome`], of any order of classes.
+#[derive(Default)]
+struct Sums {
+    cost: u64,
+    benefit: FixedSum,
+    minimum: FixedSum,
+    priced: FixedSum,
+    bound: FixedSum,
+    bound_cost: u64,
+    priced_bound: FixedSum,
+    priced_bound_cost: u64,
+}
+
+impl Sums {
+    fn add(&mut self, class: &Class<'_>, choice: u8, lambda: f64) {
+        self.cost += class.cost(choice);
+        self.benefit.add(class.plain(choice));
+        self.minimum.add(class.plain(0));
+        self.priced.add(class.priced(choice));
+        let best = class.best(lambda, Class::plain);
+        self.bound.add(class.plain(best));
+        self.bound_cost += class.cost(best);
+        let best = if class.stay == 0.0 { best } else { class.best(lambda, Class::priced) };
+        self.priced_bound.add(class.priced(best));
+        self.priced_bound_cost += class.cost(best);
+    }
+
+    /// Bounds are widened by what rounding can hide: 2⁻³² per term of a sum, two ticks per class for scaled costs, and
+    /// the last places of the products.
+    fn outcome(&self, budget: u64, lambda: f64, classes: usize) -> Outcome {
+        let hidden = classes as f64 * (2.0 * lambda + 1.0 / (1u64 << 32) as f64);
+        let bound = |benefit: FixedSum, cost: u64| {
+            let unspent = lambda * (budget as f64 - cost as f64);
+            let widest = benefit.value().abs() + lambda * (budget as f64 + cost as f64);
+            benefit.value() + unspent + hidden + widest * 1e-14
+        };
+        Outcome {
+            cost: self.cost,
+            shortfall: 0,
+            benefit: self.benefit.value(),
+            minimum_benefit: self.minimum.value(),
+            upper_bound: bound(self.bound, self.bound_cost).max(self.benefit.value()),
+            priced_benefit: self.priced.value(),
+            priced_bound: bound(self.priced_bound, self.priced_bound_cost).max(self.priced.value()),
+            lambda,
+            steps: 0,
+        }
+    }
+}

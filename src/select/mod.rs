@@ -1,0 +1,109 @@
+//! Select: from candidates to one level each. The policies behind one interface.
+//!
+//! Hysteresis and dwell belong here and nowhere else: a selector is told what was wanted of each candidate in the last
+//! frame, and for how long.
+
+mod fixed;
+mod funkhouser_sequin;
+mod predictive;
+mod reactive;
+mod screen_size;
+
+pub use fixed::{Coarsest, Finest};
+pub use funkhouser_sequin::FunkhouserSequin;
+pub use predictive::{Predictive, PredictiveOptions};
+pub use reactive::{Reactive, ReactiveOptions};
+pub use screen_size::{Measure, ScreenSize, ScreenSizeOptions};
+
+use crate::frame::{Budget, Candidates, Cause, FrameId, SelectReport, Timing};
+use crate::knapsack::FixedSum;
+use crate::rate::{CostModel, TableRates, cost_us};
+use crate::scene::Objects;
+use crate::table::Level;
+
+/// All that a selector is told about a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// Which frame it is.
+    pub id: FrameId,
+    /// The objects; their ids break ties.
+    pub objects: &'a Objects,
+    /// What is in view.
+    pub candidates: &'a Candidates,
+    /// What the levels of each table cost and are worth.
+    pub rates: &'a TableRates,
+    /// How the cost of an object follows from its geometry and its area.
+    pub model: &'a CostModel,
+    /// What the frame may cost.
+    pub budget: Budget,
+    /// What frames have been measured to take.
+    pub timing: Timing,
+}
+
+impl Frame<'_> {
+    /// Predicted time of candidate `i` at `level`; 0 when not drawn.
+    pub fn cost_us(&self, i: usize, level: Level) -> f64 {
+        cost_us(self.model, self.rates, self.candidates, i, level)
+    }
+
+    /// Benefit of candidate `i` at `level` in px²; 0 when not drawn.
+    pub fn benefit(&self, i: usize, level: Level) -> f64 {
+        let c = self.candidates;
+        f64::from(c.weight[i]) * f64::from(self.rates.accuracy(c.table[i], level))
+    }
+
+    /// The cheapest choice of candidate `i`.
+    pub fn minimum(&self, i: usize) -> Level {
+        self.rates.minimum(self.candidates.table[i], self.candidates.allowed[i])
+    }
+
+    /// What breaks ties between candidates: the object's id, then the group. The lower goes first.
+    pub fn key(&self, i: usize) -> u128 {
+        let id = self.objects.id_of(self.candidates.slot[i] as usize).unwrap_or_default();
+        u128::from(id.0) << 32 | u128::from(self.candidates.group_of(i).0)
+    }
+
+    /// Cost and benefit of a selection, and by how much the minimum choice exceeds the budget.
+    pub fn report(&self, levels: &[Level]) -> SelectReport {
+        let [mut cost, mut benefit, mut least] = [FixedSum::default(); 3];
+        for (i, &level) in levels.iter().enumerate() {
+            cost.add(self.cost_us(i, level));
+            benefit.add(self.benefit(i, level));
+            least.add(self.cost_us(i, self.minimum(i)));
+        }
+        SelectReport {
+            cost_us: cost.value(),
+            benefit: benefit.value(),
+            infeasible_us: (least.value() - self.budget.select_us).max(0.0),
+            ..SelectReport::default()
+        }
+    }
+}
+
+/// A policy: fills in one level per candidate.
+///
+/// Levels must lie in the candidate's allowed range, or be [`Level::NOT_DRAWN`] where that range ends in it. The same
+/// frames must yield the same levels, whatever the order of slots.
+pub trait Selector: Send {
+    /// Chooses. `levels` has one entry per candidate, its contents arbitrary.
+    fn select(&mut self, frame: &Frame<'_>, levels: &mut [Level]) -> SelectReport;
+
+    /// Why candidate `i` is at `level`, which it could be finer than: the budget (or the size) unless the policy knows
+    /// of another reason. `frame` is the frame that was selected last.
+    fn cause(&self, frame: &Frame<'_>, i: usize, level: Level) -> Cause {
+        let _ = (frame, i, level);
+        Cause::Budget
+    }
+
+    /// Forgets everything learnt from earlier frames.
+    fn reset(&mut self) {}
+
+    /// A copy with all its memory, for snapshots.
+    fn boxed_clone(&self) -> Box<dyn Selector>;
+}
+
+impl Clone for Box<dyn Selector> {
+    fn clone(&self) -> Self {
+        self.boxed_clone()
+    }
+}

@@ -1,0 +1,281 @@
+//! The predictive policy: the multiple-choice knapsack under the budget of this frame.
+
+use super::{Frame, Selector};
+use crate::frame::OptionsError;
+use crate::frame::{Cause, Certificate, SelectReport};
+use crate::knapsack::{Outcome, ProfileItem, SharedKnapsack};
+use crate::rate::{Stages, TableRates};
+use crate::scene::LevelRange;
+use crate::table::Level;
+
+/// Options of [`Predictive`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PredictiveOptions {
+    /// Price of a switch: a better level is taken when it is worth 1/(1 − hysteresis) of the going rate, and given up
+    /// when it is worth less than 1/(1 + hysteresis) of it. In 0…1, exclusive. Higher switches less and spends less well.
+    pub hysteresis: f32,
+    /// For so long after a switch the price is `dwell` instead.
+    pub dwell_ms: u32,
+    /// Price of a switch soon after another; not below `hysteresis`. The budget still goes first.
+    pub dwell: f32,
+}
+
+impl Default for PredictiveOptions {
+    fn default() -> Self {
+        Self { hysteresis: 0.1, dwell_ms: 250, dwell: 0.5 }
+    }
+}
+
+impl PredictiveOptions {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// Names the option that is out of its range.
+    pub fn check(&self) -> Result<(), OptionsError> {
+        let price = |x: f32| (0.0..1.0).contains(&x);
+        OptionsError::unless(price(self.hysteresis), "hysteresis", "must be at least 0 and below 1")?;
+        let dwell = price(self.dwell) && self.dwell >= self.hysteresis;
+        OptionsError::unless(dwell, "dwell", "must be at least the hysteresis and below 1")
+    }
+
+    fn price(&self, previous: Option<Level>, age_ms: u32) -> f32 {
+        match previous {
+            None => 0.0,
+            Some(_) if age_ms < self.dwell_ms => self.dwell,
+            Some(_) => self.hysteresis,
+        }
+    }
+}
+
+/// Marks a class whose hull is yet to be made.
+const OWN: u32 = u32::MAX;
+
+/// Where the cost of pixels depends on the level, the table's hull does not hold.
+fn has_own_hull(frame: &Frame<'_>, i: usize) -> bool {
+    frame.model.stages == Stages::Max || !frame.candidates.allowed[i].coarsest.is_drawn()
+}
+
+/// Maximises benefit under the budget, with a certificate: after Funkhouser and Séquin 1993 in what it maximises, not
+/// in how. Switching prices are part of the objective, so that hysteresis never breaks the budget.
+#[derive(Clone, Debug, Default)]
+pub struct Predictive {
+    options: PredictiveOptions,
+    knapsack: SharedKnapsack,
+    hulls: Hulls,
+    /// λ of the last frame in px² per µs.
+    lambda: f64,
+}
+
+impl Predictive {
+    /// The policy with these options.
+    ///
+    /// # Errors
+    /// An option that is out of its range.
+    pub fn new(options: PredictiveOptions) -> Result<Self, OptionsError> {
+        options.check()?;
+        Ok(Self { options, ..Self::default() })
+    }
+
+    /// One class per candidate; returns the ticks that are spent whatever is chosen.
+    fn fill_classes(&mut self, frame: &Frame<'_>) -> u64 {
+        self.knapsack.classes.clear();
+        let fixed = self.share_hulls(frame);
+        self.make_own_hulls(frame);
+        let candidates = frame.candidates;
+        let classes = &mut self.knapsack.classes;
+        classes.weight.extend_from_slice(&candidates.weight);
+        for i in 0..candidates.len() {
+            let own = classes.profile[i] >= self.hulls.shared_count;
+            classes.scale.push(if own { 1.0 } else { candidates.cost_scale[i] });
+            let previous = candidates.previous[i];
+            let held =
+                previous.map_or(0, |level| self.knapsack.profiles.position_of(classes.profile[i], level.0));
+            classes.current.push(held);
+            classes.stay.push(self.options.price(previous, candidates.age_ms[i]));
+        }
+        fixed
+    }
+
+    /// Gives every candidate the hull of its table and range; returns the ticks of their pixels. Candidates that need
+    /// a hull of their own are marked.
+    fn share_hulls(&mut self, frame: &Frame<'_>) -> u64 {
+        let candidates = frame.candidates;
+        let pixel_ticks = frame.model.pixel_us * self.hulls.ticks_per_us;
+        let mut fixed = 0;
+        for i in 0..candidates.len() {
+            let (table, allowed) = (candidates.table[i], candidates.allowed[i]);
+            let profile = if has_own_hull(frame, i) {
+                OWN
+            } else {
+                fixed += ceil_ticks(pixel_ticks * f64::from(candidates.area_px2[i]));
+                self.hulls.shared(table, allowed, frame.rates, &mut self.knapsack)
+            };
+            self.knapsack.classes.profile.push(profile);
+        }
+        fixed
+    }
+
+    fn make_own_hulls(&mut self, frame: &Frame<'_>) {
+        for i in 0..frame.candidates.len() {
+            if self.knapsack.classes.profile[i] == OWN {
+                self.knapsack.classes.profile[i] = self.hulls.own(frame, i, &mut self.knapsack);
+            }
+        }
+    }
+
+    fn report(&self, outcome: &Outcome, fixed: u64, over: u64) -> SelectReport {
+        let us_per_tick = 1.0 / self.hulls.ticks_per_us;
+        let certificate = Certificate {
+            upper_bound: outcome.upper_bound,
+            gap: outcome.gap(),
+            penalised_gap: outcome.priced_gap(),
+            lambda: self.lambda,
+        };
+        let shortfall = outcome.shortfall + over;
+        SelectReport {
+            cost_us: (outcome.cost + fixed) as f64 * us_per_tick,
+            benefit: outcome.benefit,
+            certificate: (shortfall == 0).then_some(certificate),
+            infeasible_us: shortfall as f64 * us_per_tick,
+            steps: outcome.steps,
+        }
+    }
+}
+
+impl Selector for Predictive {
+    fn select(&mut self, frame: &Frame<'_>, levels: &mut [Level]) -> SelectReport {
+        self.hulls.renew(frame, &mut self.knapsack);
+        let fixed = self.fill_classes(frame);
+        let budget = (frame.budget.select_us.max(0.0) * self.hulls.ticks_per_us) as u64;
+        let over = fixed.saturating_sub(budget);
+        let outcome = self.knapsack.solve(budget.saturating_sub(fixed), |i| frame.key(i));
+        self.knapsack.profiles.truncate(self.hulls.shared_count as usize);
+        for (level, &chosen) in levels.iter_mut().zip(&self.knapsack.chosen) {
+            *level = Level(chosen);
+        }
+        self.lambda = outcome.lambda * self.hulls.ticks_per_us;
+        self.report(&outcome, fixed, over)
+    }
+
+    /// Held back by the price of switching where the next finer level is worth the going rate without it.
+    fn cause(&self, frame: &Frame<'_>, i: usize, level: Level) -> Cause {
+        let candidates = frame.candidates;
+        let finer = frame.rates.drawn(candidates.table[i], candidates.allowed[i]).filter(|&(l, _)| l < level);
+        let lambda = self.lambda;
+        let pays = |to: Level| {
+            let gain = frame.benefit(i, to) - frame.benefit(i, level);
+            gain > lambda * (frame.cost_us(i, to) - frame.cost_us(i, level))
+        };
+        match candidates.previous[i] {
+            Some(held) if held == level && finer.map(|(l, _)| l).any(pays) => {
+                if candidates.age_ms[i] < self.options.dwell_ms { Cause::Dwell } else { Cause::Hysteresis }
+            }
+            _ => Cause::Budget,
+        }
+    }
+
+    fn reset(&mut self) {
+        self.knapsack.forget();
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Selector> {
+        Box::new(self.clone())
+    }
+}
+
+/// Which profile of the knapsack holds the hull of which table and range of levels. Made as they are met, kept until
+/// the rates change.
+#[derive(Clone, Debug, Default)]
+struct Hulls {
+    rates_revision: u64,
+    ticks_per_us: f64,
+    shared_count: u32,
+    by_table: Vec<Vec<(LevelRange, u32)>>,
+    items: Vec<ProfileItem>,
+}
+
+/// Costs are counted in ticks of a power of two, so fine that the dearest level of any table has 36 bits and a tick is
+/// no less than 2⁻²⁴ µs: sums over 2²⁷ objects stay within 63 bits.
+const TICK_BITS: i32 = 36;
+const FINEST_TICK: i32 = 24;
+
+impl Hulls {
+    /// Forgets all hulls when the rates have changed.
+    fn renew(&mut self, frame: &Frame<'_>, knapsack: &mut SharedKnapsack) {
+        if self.rates_revision == frame.rates.revision() && self.by_table.len() == frame.rates.tables() {
+            return;
+        }
+        self.rates_revision = frame.rates.revision();
+        self.ticks_per_us = ticks_per_us(frame.rates);
+        self.shared_count = 0;
+        knapsack.profiles.truncate(0);
+        self.by_table.iter_mut().for_each(Vec::clear);
+        self.by_table.resize(frame.rates.tables(), Vec::new());
+        for table in 0..frame.rates.tables() {
+            let coarsest = Level((frame.rates.levels(table as u16).len() - 1) as u8);
+            self.shared(table as u16, LevelRange { finest: Level::FINEST, coarsest }, frame.rates, knapsack);
+        }
+    }
+
+    /// The profile of a table cut to a range of drawn levels.
+    fn shared(
+        &mut self,
+        table: u16,
+        allowed: LevelRange,
+        rates: &TableRates,
+        knapsack: &mut SharedKnapsack,
+    ) -> u32 {
+        let known = &mut self.by_table[usize::from(table)];
+        if let Some(&(_, profile)) = known.iter().find(|(range, _)| *range == allowed) {
+            return profile;
+        }
+        let tick = self.ticks_per_us;
+        self.items.clear();
+        self.items.extend(rates.drawn(table, allowed).map(|(level, rate)| ProfileItem {
+            value: rate.accuracy,
+            ticks: ceil_ticks(rate.geometry_us * tick),
+            item: level.0,
+        }));
+        let profile = knapsack.profiles.push(&self.items);
+        known.push((allowed, profile));
+        self.shared_count = profile + 1;
+        profile
+    }
+
+    /// A profile for this candidate and frame alone, its whole cost in the ticks.
+    fn own(&mut self, frame: &Frame<'_>, i: usize, knapsack: &mut SharedKnapsack) -> u32 {
+        let (table, allowed) = (frame.candidates.table[i], frame.candidates.allowed[i]);
+        let tick = self.ticks_per_us;
+        let item = |level: Level, value: f32| ProfileItem {
+            value,
+            ticks: ceil_ticks(frame.cost_us(i, level) * tick),
+            item: level.0,
+        };
+        self.items.clear();
+        self.items.extend(frame.rates.drawn(table, allowed).map(|(level, rate)| item(level, rate.accuracy)));
+        if !allowed.coarsest.is_drawn() {
+            self.items.push(item(Level::NOT_DRAWN, 0.0));
+        }
+        knapsack.profiles.push(&self.items)
+    }
+}
+
+fn ticks_per_us(rates: &TableRates) -> f64 {
+    let tables = (0..rates.tables()).map(|t| t as u16);
+    let dearest = tables.flat_map(|t| rates.levels(t)).fold(0.0, |most: f64, l| most.max(l.geometry_us));
+    let mut bits = FINEST_TICK;
+    while bits > -TICK_BITS && dearest * power_of_two(bits) > power_of_two(TICK_BITS) {
+        bits -= 1;
+    }
+    power_of_two(bits)
+}
+
+fn power_of_two(exponent: i32) -> f64 {
+    f64::from_bits(((1023 + exponent) as u64) << 52)
+}
+
+/// Rounds up; beyond 2⁶² ticks it holds.
+fn ceil_ticks(ticks: f64) -> u64 {
+    let floor = ticks as u64;
+    (floor + u64::from((floor as f64) < ticks)).min(1 << 62)
+}
