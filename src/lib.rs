@@ -3,6 +3,7 @@
 #![warn(missing_docs)]
 
 pub mod bounds;
+pub mod cull;
 pub mod knapsack;
 pub mod scene;
 pub mod table;
