@@ -221,6 +221,8 @@ pub struct Objects {
     revision: u64,
     layout_revision: u64,
     block_revisions: Vec<u64>,
+    /// Where objects wait while [`Objects::reorder`] writes the slots anew; empty between calls.
+    moving: Vec<Object>,
 }
 
 /// What is looked at only for special objects, and who lives in the slot; `None` in a hole.
@@ -416,13 +418,14 @@ impl Objects {
     }
 
     /// Re-arranges the slots: the object in slot `order[i]` moves to slot `i`. Holes are closed. Decisions do not
-    /// depend on the order, only speed does.
+    /// depend on the order, only speed does. Allocates nothing when there are no more objects than at an earlier call.
     ///
     /// # Panics
     /// `order` must name every occupied slot exactly once.
     pub fn reorder(&mut self, order: &[u32]) {
         assert_eq!(order.len(), self.len(), "an order names every occupied slot once");
-        let objects: Vec<Object> = order.iter().filter_map(|&slot| self.read(slot as usize)).collect();
+        let mut objects = std::mem::take(&mut self.moving);
+        objects.extend(order.iter().filter_map(|&slot| self.read(slot as usize)));
         assert_eq!(objects.len(), order.len(), "an order names occupied slots only");
         self.blocks.clear();
         self.cold.clear();
@@ -431,11 +434,12 @@ impl Objects {
         self.broken_bounds = 0;
         self.revision += 1;
         self.layout_revision = self.revision;
-        for (slot, object) in objects.iter().enumerate() {
+        for (slot, object) in objects.drain(..).enumerate() {
             self.push_slot();
-            self.write(slot, object);
+            self.write(slot, &object);
             self.slots.insert(object.id, slot as u32);
         }
+        self.moving = objects;
         assert_eq!(self.slots.len(), order.len(), "an order names no slot twice");
         self.block_revisions.fill(self.revision);
         self.appended = 0;

@@ -1,44 +1,83 @@
-//! Culling.
+//! Which objects a view sees: the first stage of a frame.
+//!
+//! An object is *visible* when it is live (not hidden, its bound finite), its sphere passes
+//! [`Frustum::sees`](crate::view::Frustum::sees), it is no farther from the eye than its draw distance, and, where
+//! [`CullOptions::min_size_px`] asks for it, large enough on the screen. Two ways to the same answer, bit for bit:
+//!
+//! - [`linear`] tests every object. It needs nothing kept and is the oracle of the tests.
+//! - [`BlockTree`] keeps boxes over the blocks and passes over what is wholly in or out of view. It has to be
+//!   [updated](BlockTree::update) when objects change, and it re-arranges their slots.
+//!
+//! Take [`linear`] below about a thousand objects, for a store that is culled only once or twice, or where most
+//! objects move far in every frame. Take the tree otherwise.
+//!
+//! The idea of culling whole groups by their bounds is J. Clark's ("Hierarchical geometric models for visible
+//! surface algorithms", 1976); that a plane which a box is wholly inside of need not be tried again below is from
+//! U. Assarsson and T. Möller ("Optimized view frustum culling algorithms for bounding boxes", 2000). Here the size
+//! and the draw distance are tests like the planes, settled in the same mask.
 
-/// Objects of one block that are in view.
+mod lanes;
+mod linear;
+mod node;
+mod order;
+mod traverse;
+mod tree;
+
+#[cfg(feature = "bvh")]
+mod bvh;
+#[cfg(any(test, not(feature = "bvh")))]
+mod morton;
+
+use std::ops::AddAssign;
+
+pub use linear::linear;
+pub use tree::{BlockTree, UpdateReport};
+
+/// The visible objects of one block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VisibleBlock {
-    /// Position of the block.
+    /// Index into [`Objects::blocks`](crate::scene::Objects::blocks).
     pub block: u32,
-    /// Bit per lane; never 0.
+    /// Bit per lane, at least one of them set.
     pub mask: u16,
 }
+
+/// What is left out besides the objects out of view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CullOptions {
+    /// Contribution cull: an object is left out when a sphere of its radius times its bias has a projected diameter
+    /// below this. Only a number above 0 has an effect.
     pub min_size_px: f32,
 }
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+
+/// What culling did, in plain counts; reports of several views add up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CullReport {
-    pub visited_nodes: usize,
-    pub tested_objects: usize,
+    /// Boxes of the tree that were looked at.
+    pub nodes_visited: u64,
+    /// Blocks whose objects were tested one by one.
+    pub blocks_tested: u64,
+    /// Live objects that were tested one by one.
+    pub objects_tested: u64,
+    /// Live objects that were taken with all of their subtree, untested.
+    pub objects_accepted: u64,
+    /// Objects that are visible.
+    pub visible: u64,
+    /// Objects left out for their size. [`linear`] counts those in view alone; the tree also those of a subtree
+    /// that it left out for its size, in view or not.
+    pub too_small: u64,
+    /// Objects left out for their draw distance, counted like `too_small`; an object that is both counts here.
+    pub too_far: u64,
 }
-#[derive(Clone, Debug, Default)]
-pub struct BlockTree {}
-impl BlockTree {
-    pub fn update(&mut self, _o: &mut crate::scene::Objects) {}
-    pub fn cull(
-        &self,
-        objects: &crate::scene::Objects,
-        lens: &crate::view::Lens,
-        _: &CullOptions,
-        visible: &mut Vec<VisibleBlock>,
-    ) -> CullReport {
-        for (b, block) in objects.blocks().iter().enumerate() {
-            let mut mask = 0;
-            for lane in 0..16 {
-                if block.live >> lane & 1 == 1 && lens.frustum.sees(&block.sphere(lane)) {
-                    mask |= 1 << lane;
-                }
-            }
-            if mask != 0 {
-                visible.push(VisibleBlock { block: b as u32, mask });
-            }
-        }
-        CullReport::default()
+
+impl AddAssign for CullReport {
+    fn add_assign(&mut self, other: Self) {
+        self.nodes_visited += other.nodes_visited;
+        self.blocks_tested += other.blocks_tested;
+        self.objects_tested += other.objects_tested;
+        self.objects_accepted += other.objects_accepted;
+        self.visible += other.visible;
+        self.too_small += other.too_small;
+        self.too_far += other.too_far;
     }
 }

@@ -1,0 +1,140 @@
+//! The exact test of the sixteen objects of a block, shared by the linear scan and the tree.
+
+use glam::Vec3;
+
+use super::{CullOptions, CullReport, VisibleBlock};
+use crate::scene::{BLOCK, Block, Objects};
+use crate::view::{Lens, PLANES};
+
+/// Bits of the tests that are still open: one per plane, then [`SIZE`] and [`DISTANCE`]. A test is closed when all
+/// objects in question are known to pass it.
+pub(super) type OpenTests = u8;
+
+/// All planes.
+pub(super) const ALL_PLANES: OpenTests = (1 << PLANES) - 1;
+/// The contribution cull.
+pub(super) const SIZE: OpenTests = 1 << PLANES;
+/// The draw distance.
+pub(super) const DISTANCE: OpenTests = 2 << PLANES;
+
+/// A frame's question to the objects, and where the answer goes.
+pub(super) struct Cull<'a> {
+    pub objects: &'a Objects,
+    pub lens: &'a Lens,
+    pub min_size_px: f32,
+    pub visible: &'a mut Vec<VisibleBlock>,
+    pub report: CullReport,
+}
+
+impl<'a> Cull<'a> {
+    pub fn new(
+        objects: &'a Objects,
+        lens: &'a Lens,
+        options: &CullOptions,
+        visible: &'a mut Vec<VisibleBlock>,
+    ) -> Self {
+        visible.clear();
+        Self { objects, lens, min_size_px: options.min_size_px, visible, report: CullReport::default() }
+    }
+
+    /// The tests that an object has to pass.
+    pub fn tests(&self) -> OpenTests {
+        let size = if self.min_size_px > 0.0 { SIZE } else { 0 };
+        ALL_PLANES | DISTANCE | size
+    }
+
+    /// Puts the live objects of a block to the open tests and yields those that pass.
+    pub fn test(&mut self, index: usize, open: OpenTests) {
+        let block = &self.objects.blocks()[index];
+        self.report.blocks_tested += 1;
+        self.report.objects_tested += u64::from(block.live.count_ones());
+        let seen = block.live & in_view(block, self.lens, open);
+        if seen == 0 {
+            return;
+        }
+        let far = if open & DISTANCE != 0 { self.too_far(index, block, seen) } else { 0 };
+        let small = if open & SIZE != 0 { self.too_small(index, block, seen & !far) } else { 0 };
+        self.report.too_far += u64::from(far.count_ones());
+        self.report.too_small += u64::from(small.count_ones());
+        self.yield_block(index, seen & !far & !small);
+    }
+
+    /// Yields the objects in `mask`, if there are any.
+    pub fn yield_block(&mut self, index: usize, mask: u16) {
+        if mask != 0 {
+            self.report.visible += u64::from(mask.count_ones());
+            self.visible.push(VisibleBlock { block: index as u32, mask });
+        }
+    }
+
+    /// Which of the lanes in `mask` are beyond their draw distance. Only a special lane has one.
+    fn too_far(&self, index: usize, block: &Block, mask: u16) -> u16 {
+        select(mask & block.special, |lane| {
+            let limit = self.objects.settings(index * BLOCK + lane).draw_distance;
+            length(block.sphere(lane).center - self.lens.eye) > limit
+        })
+    }
+
+    /// Which of the lanes in `mask` are too small. Only a special lane has a bias other than 1.
+    fn too_small(&self, index: usize, block: &Block, mask: u16) -> u16 {
+        let plain = mask & !block.special & small_lanes(block, self.lens, self.min_size_px);
+        let special = select(mask & block.special, |lane| {
+            let radius = block.radius[lane] * self.objects.settings(index * BLOCK + lane).bias;
+            let distance = self.lens.distance(block.sphere(lane).center);
+            size_px(self.lens, radius, distance) < self.min_size_px
+        });
+        plain | special
+    }
+}
+
+/// Projected diameter of a sphere at a distance as [`Lens::distance`] gives it: the arithmetic of [`Lens::size_px`].
+pub(super) fn size_px(lens: &Lens, radius: f32, distance: f32) -> f32 {
+    2.0 * radius * lens.scale_px / distance
+}
+
+/// Length of a vector, in the arithmetic of [`Lens::distance`].
+pub(super) fn length(d: Vec3) -> f32 {
+    (d.x * d.x + d.y * d.y + d.z * d.z).sqrt()
+}
+
+/// The lanes of `mask` for which `is_so` holds.
+fn select(mut mask: u16, mut is_so: impl FnMut(usize) -> bool) -> u16 {
+    let mut selected = 0;
+    while mask != 0 {
+        let lane = mask.trailing_zeros();
+        selected |= u16::from(is_so(lane as usize)) << lane;
+        mask &= mask - 1;
+    }
+    selected
+}
+
+/// The lanes that [`Frustum::sees`](crate::view::Frustum::sees), as far as the open planes can tell. Straight loops
+/// over the lanes, which compilers turn into vector code.
+fn in_view(block: &Block, lens: &Lens, open: OpenTests) -> u16 {
+    let mut inside = [1; BLOCK];
+    for (_, plane) in lens.frustum.planes.iter().enumerate().filter(|&(i, _)| open & (1 << i) != 0) {
+        let n = plane.normal;
+        for (lane, inside) in inside.iter_mut().enumerate() {
+            let along = n.x * block.x[lane] + n.y * block.y[lane] + n.z * block.z[lane];
+            *inside &= u32::from(along + plane.offset >= -block.radius[lane]);
+        }
+    }
+    bits(&inside)
+}
+
+/// The lanes whose projected diameter, at a bias of 1, is below `min_size_px`.
+fn small_lanes(block: &Block, lens: &Lens, min_size_px: f32) -> u16 {
+    let mut small = [0; BLOCK];
+    let eye = lens.eye;
+    for (lane, small) in small.iter_mut().enumerate() {
+        let d = Vec3::new(block.x[lane] - eye.x, block.y[lane] - eye.y, block.z[lane] - eye.z);
+        let distance = if lens.perspective { length(d).max(lens.near) } else { 1.0 };
+        *small = u32::from(size_px(lens, block.radius[lane], distance) < min_size_px);
+    }
+    bits(&small)
+}
+
+/// Bit per lane from a 0 or 1 per lane.
+fn bits(lanes: &[u32; BLOCK]) -> u16 {
+    lanes.iter().enumerate().fold(0, |mask, (lane, &bit)| mask | bit << lane) as u16
+}

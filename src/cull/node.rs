@@ -1,0 +1,120 @@
+//! What the tree knows about the objects below a node.
+
+use glam::Vec3;
+
+use crate::bounds::{Aabb, Sphere};
+use crate::scene::{BLOCK, Objects};
+
+/// Objects that reach farther from the origin than this, in world units, are put into a box that is all of space
+/// and always tested one by one: beyond about 1e19 the distance to a plane can overflow, and a box could no longer
+/// foretell the exact test. Any value from the size of the largest world to 1e18 is right.
+pub(super) const TAME: f32 = 1e15;
+
+/// Added to every side of a box, so that its extent is a normal number and relative room for rounding is room. Any
+/// value from 1e-32 to the size of a speck of dust is right.
+const SKIN: f32 = 1e-30;
+
+/// Summary of the live objects below a node of the tree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Node {
+    /// Holds all their spheres; empty when there is none, all of space when one is beyond [`TAME`].
+    pub aabb: Aabb,
+    /// Least radius · bias.
+    pub smallest: f32,
+    /// Greatest radius · bias.
+    pub largest: f32,
+    /// Least draw distance.
+    pub shortest: f32,
+    /// Greatest draw distance.
+    pub longest: f32,
+    /// How many there are.
+    pub live: u32,
+    /// Summed half-area of the tame boxes of the blocks below.
+    pub area: f32,
+}
+
+impl Node {
+    /// No object at all; the neutral element of [`Node::union`].
+    pub const EMPTY: Self = Self {
+        aabb: Aabb::EMPTY,
+        smallest: f32::INFINITY,
+        largest: 0.0,
+        shortest: f32::INFINITY,
+        longest: 0.0,
+        live: 0,
+        area: 0.0,
+    };
+
+    /// The node over one block.
+    pub fn of_block(objects: &Objects, index: usize) -> Self {
+        let block = &objects.blocks()[index];
+        let lanes = (0..BLOCK).filter(|lane| block.live & (1 << lane) != 0);
+        let mut node = lanes.fold(Self::EMPTY, |node, lane| {
+            let (bias, draw_distance) = match block.special & (1 << lane) {
+                0 => (1.0, f32::INFINITY),
+                _ => {
+                    let settings = objects.settings(index * BLOCK + lane);
+                    (settings.bias, settings.draw_distance)
+                }
+            };
+            node.union(&Self::of_object(&block.sphere(lane), bias, draw_distance))
+        });
+        node.area = if node.is_tame() { node.aabb.half_area() } else { 0.0 };
+        node
+    }
+
+    fn of_object(sphere: &Sphere, bias: f32, draw_distance: f32) -> Self {
+        let size = sphere.radius * bias;
+        Self {
+            aabb: spacious(sphere),
+            smallest: size,
+            largest: size,
+            shortest: draw_distance,
+            longest: draw_distance,
+            live: 1,
+            area: 0.0,
+        }
+    }
+
+    /// The node over both.
+    pub fn union(&self, other: &Self) -> Self {
+        Self {
+            aabb: self.aabb.union(other.aabb),
+            smallest: self.smallest.min(other.smallest),
+            largest: self.largest.max(other.largest),
+            shortest: self.shortest.min(other.shortest),
+            longest: self.longest.max(other.longest),
+            live: self.live + other.live,
+            area: self.area + other.area,
+        }
+    }
+
+    /// Whether the box may be tried against planes.
+    pub fn is_tame(&self) -> bool {
+        self.aabb.max.x < f32::INFINITY
+    }
+
+    /// Distances from `eye` that no centre below the node is nearer or farther than, per axis.
+    ///
+    /// Every step of the way from a centre to its distance, and on to its size, is a rounded operation, which is
+    /// monotone; the corners of the box take the same steps, so that the bounds hold to the last bit, without room
+    /// for rounding. What is not a number becomes 0 in the near bound and fails every comparison in the far one.
+    pub fn reach(&self, eye: Vec3) -> [Vec3; 2] {
+        let (below, above) = (self.aabb.min - eye, eye - self.aabb.max);
+        [below.max(above).max(Vec3::ZERO), below.abs().max(above.abs())]
+    }
+}
+
+/// A box around the sphere with a little room, or all of space.
+fn spacious(sphere: &Sphere) -> Aabb {
+    if !is_tame(sphere) {
+        return Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+    }
+    let aabb = sphere.aabb();
+    Aabb { min: aabb.min - SKIN, max: aabb.max + SKIN }
+}
+
+/// Whether planes can be told from rounding at the sphere's place.
+pub(super) fn is_tame(sphere: &Sphere) -> bool {
+    sphere.center.abs().max_element() + sphere.radius <= TAME
+}

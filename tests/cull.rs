@@ -1,0 +1,546 @@
+//! Culling: the exact test against the vocabulary's own arithmetic, and the tree against the linear scan.
+
+use glam::{DVec3, Quat, Vec2, Vec3};
+use lod_budget::bounds::Sphere;
+use lod_budget::cull::{BlockTree, CullOptions, CullReport, VisibleBlock, linear};
+use lod_budget::scene::{BLOCK, Object, ObjectId, Objects, Settings, TableId};
+use lod_budget::table::{LevelRecord, LodTable};
+use lod_budget::view::{Lens, Projection, View, Window};
+use proptest::prelude::*;
+use proptest::sample::{Index, select};
+
+fn store(objects: impl IntoIterator<Item = (Sphere, Settings)>) -> Objects {
+    let mut store = Objects::new();
+    let sphere = Sphere::new(Vec3::ZERO, 1.0);
+    let table = LodTable::new("ball", sphere, vec![LevelRecord::new(100, 60)]).expect("a good table");
+    store.add_table(table).expect("room");
+    for (id, (bounds, settings)) in (0..).zip(objects) {
+        insert(&mut store, id, bounds, settings);
+    }
+    store
+}
+
+fn insert(store: &mut Objects, id: u64, bounds: Sphere, settings: Settings) {
+    store.insert(Object { settings, ..Object::new(id, bounds, TableId(0)) }).expect("a new id");
+}
+
+fn plain(spheres: impl IntoIterator<Item = Sphere>) -> Objects {
+    store(spheres.into_iter().map(|s| (s, Settings::default())))
+}
+
+fn arranged(objects: &mut Objects) -> BlockTree {
+    let mut tree = BlockTree::new();
+    tree.update(objects);
+    tree
+}
+
+fn grid(side: i32, step: f32) -> impl Iterator<Item = Sphere> {
+    let axis = -side..=side;
+    axis.clone()
+        .flat_map(move |x| axis.clone().map(move |z| (x, z)))
+        .map(move |(x, z)| Sphere::new(Vec3::new(x as f32, 0.0, z as f32) * step, 0.5))
+}
+
+fn ahead(distance: f32) -> Sphere {
+    Sphere::new(Vec3::new(0.0, 0.0, -distance), 1.0)
+}
+
+/// A window of 45° to either side, whose planes go through points of whole numbers.
+fn square() -> View {
+    View::through(Projection::Perspective(Window::symmetric(1.0, 1.0)), Vec2::splat(1000.0))
+}
+
+fn lens(view: &View) -> Lens {
+    view.lens(DVec3::ZERO)
+}
+
+/// The answer of the scan, into a buffer that held something else.
+fn scan(objects: &Objects, lens: &Lens, options: &CullOptions) -> (Vec<VisibleBlock>, CullReport) {
+    let mut visible = vec![VisibleBlock { block: 9, mask: 9 }];
+    let report = linear(objects, lens, options, &mut visible);
+    (visible, report)
+}
+
+/// The answer of the tree, likewise.
+fn search(
+    tree: &BlockTree,
+    objects: &Objects,
+    lens: &Lens,
+    options: &CullOptions,
+) -> (Vec<VisibleBlock>, CullReport) {
+    let mut visible = vec![VisibleBlock { block: 9, mask: 9 }];
+    let report = tree.cull(objects, lens, options, &mut visible);
+    (visible, report)
+}
+
+/// Who is visible, by id: what must not depend on the arrangement.
+fn ids(objects: &Objects, visible: &[VisibleBlock]) -> Vec<ObjectId> {
+    let slots = |v: &VisibleBlock| {
+        let (block, mask) = (v.block as usize, v.mask);
+        (0..BLOCK).filter(move |lane| mask & (1 << lane) != 0).map(move |lane| block * BLOCK + lane)
+    };
+    let mut ids: Vec<ObjectId> = visible.iter().flat_map(slots).filter_map(|s| objects.id_of(s)).collect();
+    ids.sort_unstable();
+    ids
+}
+
+/// The contract, object by object, in the words of the vocabulary.
+fn is_visible(object: &Object, lens: &Lens, options: &CullOptions) -> bool {
+    let Object { bounds, settings, .. } = object;
+    let true_distance = Lens { perspective: true, near: 0.0, ..*lens }.distance(bounds.center);
+    let biased = Sphere::new(bounds.center, bounds.radius * settings.bias);
+    let below = options.min_size_px > 0.0 && lens.size_px(&biased) < options.min_size_px;
+    let beyond = true_distance > settings.draw_distance;
+    bounds.is_valid() && !settings.hidden && lens.frustum.sees(bounds) && !below && !beyond
+}
+
+fn live(objects: &Objects) -> u64 {
+    objects.blocks().iter().map(|b| u64::from(b.live.count_ones())).sum()
+}
+
+/// Compares the scan with the contract, and the tree with the scan. `all` are the ids in the store, ascending.
+fn compare(tree: &BlockTree, objects: &Objects, all: &[u64], lens: &Lens, options: &CullOptions) {
+    let (expected, scanned) = scan(objects, lens, options);
+    let of_contract = all
+        .iter()
+        .map(|&id| ObjectId(id))
+        .filter(|&id| objects.get(id).is_some_and(|object| is_visible(&object, lens, options)));
+    assert_eq!(ids(objects, &expected), of_contract.collect::<Vec<_>>());
+    assert!(expected.windows(2).all(|w| w[0].block < w[1].block) && expected.iter().all(|v| v.mask != 0));
+    assert_eq!(scanned.visible, expected.iter().map(|v| u64::from(v.mask.count_ones())).sum::<u64>());
+    assert_eq!((scanned.objects_tested, scanned.nodes_visited), (live(objects), 0));
+
+    let (found, searched) = search(tree, objects, lens, options);
+    assert_eq!(found, expected);
+    assert_eq!(searched.visible, scanned.visible);
+    assert!(searched.objects_tested + searched.objects_accepted <= live(objects));
+    assert!(searched.objects_accepted <= searched.visible);
+}
+
+#[test]
+fn an_empty_store_shows_nothing() {
+    let mut objects = Objects::new();
+    let tree = arranged(&mut objects);
+    compare(&tree, &objects, &[], &lens(&square()), &CullOptions::default());
+}
+
+#[test]
+fn one_object_is_seen_or_not() {
+    for (distance, expected) in [(5.0, 1), (-5.0, 0)] {
+        let mut objects = plain([ahead(distance)]);
+        let tree = arranged(&mut objects);
+        let (visible, report) = search(&tree, &objects, &lens(&square()), &CullOptions::default());
+        assert_eq!((visible.len(), report.visible), (expected, expected as u64));
+    }
+}
+
+#[test]
+fn spheres_that_touch_a_plane_are_seen() {
+    let objects = plain([ahead(1001.0), ahead(1001.5)]);
+    let (visible, _) = scan(&objects, &lens(&square()), &CullOptions::default());
+    assert_eq!(ids(&objects, &visible), [ObjectId(0)]);
+}
+
+#[test]
+fn a_subtree_in_view_is_accepted_untested_and_one_out_of_view_is_not_entered() {
+    let mut objects = plain(grid(40, 1.0));
+    let tree = arranged(&mut objects);
+    let far = View { far: f32::INFINITY, ..square() };
+    let above = far.at(Vec3::Y * 500.0, Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2));
+    let (_, report) = search(&tree, &objects, &lens(&above), &CullOptions::default());
+    let all = objects.len() as u64;
+    let expected = CullReport { nodes_visited: 1, objects_accepted: all, visible: all, ..Default::default() };
+    assert_eq!(report, expected);
+    let away = far.at(Vec3::Z * -500.0, Quat::IDENTITY);
+    let (_, report) = search(&tree, &objects, &lens(&away), &CullOptions::default());
+    assert_eq!(report, CullReport { nodes_visited: 1, ..Default::default() });
+}
+
+#[test]
+fn a_city_is_tested_at_the_border_of_the_view_only() {
+    let mut objects = plain(grid(100, 4.0));
+    let tree = arranged(&mut objects);
+    let street = lens(&square().at(Vec3::new(3.0, 1.0, 7.0), Quat::from_rotation_y(0.4)));
+    let (visible, report) = search(&tree, &objects, &street, &CullOptions::default());
+    assert_eq!(visible, scan(&objects, &street, &CullOptions::default()).0);
+    assert!(report.objects_tested < objects.len() as u64 / 5, "{report:?}");
+    assert!(report.objects_accepted > report.visible / 2, "{report:?}");
+}
+
+#[test]
+fn small_and_far_subtrees_are_left_out_whole() {
+    let mut objects = plain(grid(40, 1.0));
+    let mut tree = arranged(&mut objects);
+    let view = lens(&square().at(Vec3::Z * 100.0, Quat::IDENTITY));
+    let (_, report) = search(&tree, &objects, &view, &CullOptions { min_size_px: 1e6 });
+    assert_eq!((report.nodes_visited, report.too_small), (1, objects.len() as u64));
+    for id in 0..objects.len() as u64 {
+        let settings = Settings { draw_distance: 1.0, ..Settings::default() };
+        objects.set_settings(ObjectId(id), settings).expect("a known id");
+    }
+    tree.update(&mut objects);
+    let (_, report) = search(&tree, &objects, &view, &CullOptions::default());
+    assert_eq!((report.nodes_visited, report.too_far), (1, objects.len() as u64));
+}
+
+#[test]
+fn bias_counts_as_size_and_orthographic_sizes_ignore_distance() {
+    let biased = Settings { bias: 4.0, ..Settings::default() };
+    let plain = Settings::default();
+    let objects = store([(ahead(10.0), plain), (ahead(900.0), biased), (ahead(900.0), plain)]);
+    let options = CullOptions { min_size_px: 30.0 };
+    let perspective = scan(&objects, &lens(&square()), &options);
+    assert_eq!((ids(&objects, &perspective.0), perspective.1.too_small), (vec![ObjectId(0)], 2));
+    let flat = lens(&View::orthographic(100.0, Vec2::splat(1000.0)));
+    let orthographic = scan(&objects, &flat, &options);
+    assert_eq!((ids(&objects, &orthographic.0), orthographic.1.too_small), (vec![ObjectId(1)], 2));
+}
+
+#[test]
+fn a_draw_distance_is_a_true_distance_in_any_view() {
+    let limited = Settings { draw_distance: 50.0, ..Settings::default() };
+    let objects = store([(ahead(50.0), limited), (ahead(50.5), limited)]);
+    for view in [square(), View::orthographic(10.0, Vec2::splat(1000.0))] {
+        let (visible, report) = scan(&objects, &lens(&view), &CullOptions::default());
+        assert_eq!((ids(&objects, &visible), report.too_far), (vec![ObjectId(0)], 1));
+    }
+}
+
+#[test]
+fn nothing_is_done_when_nothing_changed_and_little_when_little_did() {
+    let mut objects = plain(grid(20, 1.0));
+    let mut tree = BlockTree::new();
+    let first = tree.update(&mut objects);
+    assert!(first.reordered && first.blocks_refitted == objects.blocks().len());
+    assert_eq!(tree.update(&mut objects), Default::default());
+    objects.set_bounds(ObjectId(3), Sphere::new(Vec3::splat(2.0), 1.0)).expect("a known id");
+    let second = tree.update(&mut objects);
+    assert_eq!((second.blocks_refitted, second.reordered), (1, false));
+}
+
+#[test]
+fn few_objects_are_never_arranged() {
+    assert!(!BlockTree::new().update(&mut plain(grid(1, 1.0))).reordered);
+}
+
+#[test]
+fn a_scene_in_full_motion_is_arranged_now_and_then() {
+    let mut objects = plain(grid(20, 1.0));
+    let mut tree = arranged(&mut objects);
+    let n = objects.len() as u64;
+    let mut orders = 0;
+    for frame in 0..200 {
+        for id in 0..n {
+            let place = (id * 797 + frame) % n;
+            let center = Vec3::new((place % 41) as f32, 0.0, (place / 41) as f32);
+            objects.set_bounds(ObjectId(id), Sphere::new(center, 0.5)).expect("a known id");
+        }
+        orders += usize::from(tree.update(&mut objects).reordered);
+    }
+    assert!((1..10).contains(&orders), "{orders} orders in 200 frames");
+}
+
+#[test]
+fn holes_are_closed_when_there_are_many() {
+    let mut objects = plain(grid(20, 1.0));
+    let mut tree = arranged(&mut objects);
+    let blocks = objects.blocks().len();
+    for id in 0..objects.len() as u64 / 5 {
+        objects.remove(ObjectId(id));
+    }
+    assert!(tree.update(&mut objects).reordered);
+    assert!(objects.disorder() == 0 && objects.blocks().len() < blocks);
+}
+
+#[test]
+fn the_arrangement_does_not_depend_on_the_order_of_insertion() {
+    let spheres: Vec<Sphere> = grid(20, 1.7).collect();
+    let arrange = |ids: Vec<usize>| {
+        let mut objects = plain([]);
+        ids.into_iter().for_each(|id| insert(&mut objects, id as u64, spheres[id], Settings::default()));
+        arranged(&mut objects);
+        (0..objects.len()).map(|slot| objects.id_of(slot)).collect::<Vec<_>>()
+    };
+    let forwards = arrange((0..spheres.len()).collect());
+    assert_eq!(forwards, arrange((0..spheres.len()).rev().collect()));
+    assert!(forwards.iter().all(Option::is_some));
+}
+
+/// Where all distances tie, the hierarchy's builder would take quadratic time: minutes instead of milliseconds.
+#[test]
+fn a_crowd_in_one_place_and_a_row_of_posts_are_arranged() {
+    let n = 60_000;
+    let crowd = |place| plain((0..n).map(move |_| place));
+    let posts = (0..n).map(|i| Sphere::new(Vec3::X * i as f32, 0.25));
+    for mut objects in [crowd(Sphere::new(Vec3::splat(7.0), 1.0)), crowd(Sphere::default()), plain(posts)] {
+        let mut tree = BlockTree::new();
+        assert!(tree.update(&mut objects).reordered);
+        let view = lens(&square().at(Vec3::new(9.0, 9.0, 30.0), Quat::IDENTITY));
+        let options = CullOptions { min_size_px: 1.0 };
+        assert_eq!(search(&tree, &objects, &view, &options).0, scan(&objects, &view, &options).0);
+    }
+}
+
+#[test]
+fn hidden_and_broken_objects_share_no_block_with_the_others() {
+    let hidden = Settings { hidden: true, ..Settings::default() };
+    let broken = Sphere::new(Vec3::NAN, 1.0);
+    let mut objects = store(grid(20, 1.0).enumerate().map(|(i, sphere)| match i % 3 {
+        0 => (sphere, hidden),
+        1 => (broken, Settings::default()),
+        _ => (sphere, Settings::default()),
+    }));
+    arranged(&mut objects);
+    let mixed = objects.blocks().iter().filter(|b| b.live != 0 && b.live != u16::MAX).count();
+    assert!(mixed <= 1, "{mixed} blocks of {}", objects.blocks().len());
+}
+
+#[test]
+fn a_tree_that_was_not_updated_still_answers_right() {
+    let mut objects = plain(grid(20, 1.0));
+    let tree = arranged(&mut objects);
+    objects.set_bounds(ObjectId(5), ahead(90.0)).expect("a known id");
+    let view = lens(&square().at(Vec3::Z * -60.0, Quat::IDENTITY));
+    let (visible, report) = search(&tree, &objects, &view, &CullOptions::default());
+    assert_eq!((ids(&objects, &visible), report.nodes_visited), (vec![ObjectId(5)], 0));
+}
+
+#[test]
+fn reports_add_up() {
+    let a = CullReport { visible: 1, too_far: 2, nodes_visited: 3, ..Default::default() };
+    let mut sum = CullReport { visible: 10, blocks_tested: 5, ..Default::default() };
+    sum += a;
+    assert_eq!(sum, CullReport { visible: 11, blocks_tested: 5, ..a });
+}
+
+/// A coordinate: usually of the neighbourhood, often a whole number, sometimes absurd.
+fn coordinate() -> impl Strategy<Value = f32> {
+    let absurd = vec![0.0, -0.0, 1e-40, -1e-30, 1e14, -3e15, 1e19, -2e30, f32::MAX, f32::MIN];
+    prop_oneof![
+        12 => -60f32..60.0,
+        12 => (-20i8..20).prop_map(f32::from),
+        1 => -1e7f32..1e7,
+        1 => select(absurd),
+    ]
+}
+
+fn center() -> impl Strategy<Value = Vec3> {
+    prop_oneof![
+        30 => (coordinate(), coordinate(), coordinate()).prop_map(Vec3::from),
+        1 => Just(Vec3::new(f32::NAN, 0.0, 0.0)),
+        1 => Just(Vec3::new(0.0, f32::NEG_INFINITY, 0.0)),
+    ]
+}
+
+fn radius() -> impl Strategy<Value = f32> {
+    let absurd = vec![0.0, 1e-40, 1e-6, 1e3, 1e10, 1e20, f32::MAX, f32::INFINITY, f32::NAN, -1.0];
+    prop_oneof![12 => 0f32..3.0, 6 => (0u8..4).prop_map(f32::from), 1 => select(absurd)]
+}
+
+fn bounds() -> impl Strategy<Value = Sphere> {
+    (center(), radius()).prop_map(|(center, radius)| Sphere::new(center, radius))
+}
+
+fn settings() -> impl Strategy<Value = Settings> {
+    let bias = select(vec![1.0, 1.0, 0.25, 3.0, 1e-3, 1e3, 1e-30, 1e30]);
+    let distance = select(vec![f32::INFINITY, f32::INFINITY, 0.0, 5.0, 20.0, 33.3, 1e20]);
+    let special = (bias, distance, prop::bool::weighted(0.1)).prop_map(|(bias, draw_distance, hidden)| {
+        Settings { bias, draw_distance, hidden, ..Settings::default() }
+    });
+    prop_oneof![3 => Just(Settings::default()), 1 => special]
+}
+
+fn anything() -> impl Strategy<Value = (Sphere, Settings)> {
+    (bounds(), settings())
+}
+
+fn ordinary() -> impl Strategy<Value = (Sphere, Settings)> {
+    (-60f32..60.0, -60f32..60.0, -60f32..60.0, 0f32..2.0)
+        .prop_map(|(x, y, z, r)| (Sphere::new(Vec3::new(x, y, z), r), Settings::default()))
+}
+
+/// Scenes of ordinary objects take the tree's short cuts; the others have a bit of everything.
+fn scene() -> impl Strategy<Value = Vec<(Sphere, Settings)>> {
+    prop_oneof![
+        prop::collection::vec(anything(), 0..60),
+        prop::collection::vec(anything(), 60..900),
+        prop::collection::vec(prop_oneof![200 => ordinary(), 1 => anything()], 100..1500),
+        prop::collection::vec(ordinary(), 0..3000),
+    ]
+}
+
+fn window() -> impl Strategy<Value = Window> {
+    let edge = || prop_oneof![Just(1.0f32), Just(0.5), 0.01f32..3.0, Just(1e4)];
+    let around = (edge(), edge(), edge(), edge()).prop_map(|(left, right, bottom, top)| Window {
+        left: -left,
+        right,
+        bottom: -bottom,
+        top,
+    });
+    let aside = (0.1f32..2.0, 0.1f32..2.0).prop_map(|(x, width)| Window {
+        left: x,
+        right: x + width,
+        bottom: -x,
+        top: width,
+    });
+    prop_oneof![4 => around, 1 => aside]
+}
+
+fn projection() -> impl Strategy<Value = Projection> {
+    prop_oneof![
+        3 => window().prop_map(Projection::Perspective),
+        1 => window().prop_map(|w| Projection::Orthographic(Window {
+            left: w.left * 20.0,
+            right: w.right * 20.0,
+            bottom: w.bottom * 20.0,
+            top: w.top * 20.0,
+        })),
+    ]
+}
+
+fn rotation() -> impl Strategy<Value = Quat> {
+    let part = || -1f32..1.0;
+    let any = (part(), part(), part(), 0.01f32..1.0).prop_map(|(x, y, z, w)| Quat::from_xyzw(x, y, z, w));
+    prop_oneof![1 => Just(Quat::IDENTITY), 1 => Just(Quat::from_xyzw(0.0, 1.0, 0.0, 0.0)), 3 => any]
+}
+
+fn view() -> impl Strategy<Value = View> {
+    let depth = select(vec![(0.1, 1000.0), (1.0, 20.0), (0.5, f32::INFINITY), (1e-3, 1e30)]);
+    let eye = (coordinate(), coordinate(), coordinate()).prop_map(Vec3::from);
+    let eye = prop_oneof![6 => eye, 1 => Just(Vec3::ZERO)];
+    let origin = prop_oneof![8 => Just(0.0), 1 => Just(1e9), 1 => Just(1e300)];
+    (projection(), rotation(), eye, depth, origin).prop_map(|(projection, rotation, eye, (near, far), x)| {
+        View {
+            near,
+            far,
+            origin: DVec3::X * x,
+            ..View::through(projection, Vec2::new(1280.0, 720.0)).at(eye, rotation)
+        }
+    })
+}
+
+fn options() -> impl Strategy<Value = CullOptions> {
+    let sizes = vec![0.0, 0.0, 0.5, 8.0, 40.0, 200.0, 1e6, f32::INFINITY, f32::NAN, -1.0, 1e-40];
+    select(sizes).prop_map(|min_size_px| CullOptions { min_size_px })
+}
+
+/// What may happen to a store between two frames.
+#[derive(Clone, Debug)]
+enum Change {
+    Insert(Sphere, Settings),
+    Remove(Index),
+    Move(Index, Sphere),
+    Set(Index, Settings),
+    Shift(f64),
+}
+
+fn change() -> impl Strategy<Value = Change> {
+    let who = any::<Index>;
+    prop_oneof![
+        8 => anything().prop_map(|(bounds, settings)| Change::Insert(bounds, settings)),
+        8 => who().prop_map(Change::Remove),
+        8 => (who(), bounds()).prop_map(|(who, bounds)| Change::Move(who, bounds)),
+        4 => (who(), settings()).prop_map(|(who, settings)| Change::Set(who, settings)),
+        1 => (-30.0..30.0).prop_map(Change::Shift),
+    ]
+}
+
+/// A store that changes, and the ids in it, in ascending order.
+struct Changing {
+    objects: Objects,
+    ids: Vec<u64>,
+    next: u64,
+}
+
+impl Changing {
+    fn new(scene: Vec<(Sphere, Settings)>) -> Self {
+        let next = scene.len() as u64;
+        Self { objects: store(scene), ids: (0..next).collect(), next }
+    }
+
+    fn apply(&mut self, change: Change) {
+        match change {
+            Change::Insert(bounds, settings) => {
+                insert(&mut self.objects, self.next, bounds, settings);
+                self.ids.push(self.next);
+                self.next += 1;
+            }
+            Change::Shift(by) => self.objects.shift_origin(self.objects.origin() + DVec3::splat(by)),
+            _ if self.ids.is_empty() => {}
+            Change::Remove(who) => {
+                let id = self.ids.remove(who.index(self.ids.len()));
+                assert!(self.objects.remove(ObjectId(id)).is_some());
+            }
+            Change::Move(who, bounds) => {
+                let id = ObjectId(self.ids[who.index(self.ids.len())]);
+                self.objects.set_bounds(id, bounds).expect("a known id");
+            }
+            Change::Set(who, settings) => {
+                let id = ObjectId(self.ids[who.index(self.ids.len())]);
+                self.objects.set_settings(id, settings).expect("a known id");
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn the_tree_sees_what_the_scan_sees(
+        scene in scene(),
+        views in prop::collection::vec((view(), options()), 1..6),
+    ) {
+        let all: Vec<u64> = (0..scene.len() as u64).collect();
+        let mut objects = store(scene);
+        let tree = arranged(&mut objects);
+        for (view, options) in views {
+            compare(&tree, &objects, &all, &lens(&view), &options);
+        }
+    }
+
+    #[test]
+    fn an_eye_at_an_object_changes_nothing(
+        scene in scene(),
+        view in view(),
+        options in options(),
+        who: Index,
+    ) {
+        prop_assume!(!scene.is_empty());
+        let eye = scene[who.index(scene.len())].0.center;
+        let all: Vec<u64> = (0..scene.len() as u64).collect();
+        let mut objects = store(scene);
+        let tree = arranged(&mut objects);
+        compare(&tree, &objects, &all, &lens(&View { eye, ..view }), &options);
+    }
+
+    #[test]
+    fn a_scene_that_changes_is_seen_as_it_is(
+        scene in scene(),
+        frames in prop::collection::vec((prop::collection::vec(change(), 0..40), view(), options()), 1..12),
+    ) {
+        let mut scene = Changing::new(scene);
+        let mut tree = BlockTree::new();
+        for (changes, view, options) in frames {
+            changes.into_iter().for_each(|change| scene.apply(change));
+            tree.update(&mut scene.objects);
+            let lens = view.lens(scene.objects.origin());
+            compare(&tree, &scene.objects, &scene.ids, &lens, &options);
+        }
+    }
+
+    #[test]
+    fn a_broken_view_is_answered_alike(scene in scene(), view in view(), kind in 0..5) {
+        let view = match kind {
+            0 => View { rotation: Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), ..view },
+            1 => View { eye: Vec3::NAN, ..view },
+            2 => View { near: 0.0, viewport_px: Vec2::ZERO, ..view },
+            3 => View { rotation: Quat::from_xyzw(0.0, 1e-22, 0.0, 1e-22), ..view },
+            _ => View { far: f32::NAN, ..view },
+        };
+        let all: Vec<u64> = (0..scene.len() as u64).collect();
+        let mut objects = store(scene);
+        let tree = arranged(&mut objects);
+        compare(&tree, &objects, &all, &lens(&view), &CullOptions { min_size_px: 1.0 });
+    }
+}
