@@ -1,5 +1,8 @@
 //! A scene as it is read or generated: tables and objects, not yet in the hot store.
 
+use std::path::Path;
+
+use super::{FileError, disk};
 use crate::scene::{Object, ObjectError, Objects};
 use crate::table::LodTable;
 
@@ -28,5 +31,28 @@ impl Scene {
             store.insert(*object)?;
         }
         Ok(store)
+    }
+
+    /// Reads a scene file; its extension says which kind: `.json` ([`crate::files::scene_json`]), `.glb` or `.gltf`
+    /// ([`crate::files::gltf`]).
+    ///
+    /// # Errors
+    /// A file that cannot be read, of an unknown kind, or malformed.
+    pub fn read(path: &Path) -> Result<Self, FileError> {
+        let file = path.display().to_string();
+        match disk::extension(path).as_str() {
+            "json" => Self::from_json(&disk::read_bytes(path)?, &file),
+            "glb" | "gltf" => Self::from_gltf(&disk::read_bytes(path)?, &file),
+            _ => Err(FileError::whole(file, "a scene must be a .json, .glb or .gltf file")),
+        }
+    }
+
+    /// Writes the scene as JSON, replacing the file as a whole.
+    ///
+    /// # Errors
+    /// What [`Scene::to_json`] or the file system refuses; an older file is then as it was.
+    pub fn write(&self, path: &Path) -> Result<(), FileError> {
+        let named = |e: FileError| FileError { file: path.display().to_string(), ..e };
+        disk::write_atomically(path, self.to_json().map_err(named)?.as_bytes())
     }
 }
