@@ -10,3 +10,6 @@ pub mod view;
 
 #[cfg(feature = "files")]
 pub mod files;
+
+#[cfg(feature = "sim")]
+pub mod sim;
