@@ -167,14 +167,14 @@ impl Site {
         }
     }
 
-    /// Windows to the outside, a door wall to a gallery, a wall between different rooms, a railing along the atrium.
+    /// Windows to the outside, a door wall to a gallery, a wall between different rooms, a railing above the atrium.
     fn enclose(&mut self, plan: &Plan, module: Module) {
         for side in [(0, -1), (1, 0), (0, 1), (-1, 0)] {
             let beside = plan.beside(module, side);
             let first = side.0 + side.1 > 0;
             let stock = match (module.room, beside) {
                 (_, None) => self.stocks.window_wall,
-                (b'.', Some(b'A')) => self.stocks.railing,
+                (b'.', Some(b'A')) if plan.floor > 0.0 => self.stocks.railing,
                 (room, Some(b'.')) if is_room(room) => self.stocks.door_wall,
                 (room, Some(other)) if is_room(room) && room != other && (first || !is_room(other)) => {
                     self.stocks.wall
@@ -320,9 +320,10 @@ const VISIT: &[Key] = &[
     key(4.0, [3.0, EYE, 9.0], 390.0, -2.0),
     key(7.0, [9.0, EYE, 9.0], 360.0, -2.0),
     // A look through the doorway of the library, and on into the atrium.
-    key(10.0, [17.0, EYE, 9.0], 450.0, 0.0),
-    key(12.5, [20.5, EYE, 10.0], 510.0, 6.0),
-    key(16.0, [27.0, EYE, 15.0], 480.0, 35.0),
+    key(8.5, [13.0, EYE, 9.0], 440.0, 0.0),
+    key(12.0, [25.0, EYE, 8.0], 400.0, -3.0),
+    key(13.5, [27.0, EYE, 9.5], 510.0, 6.0),
+    key(16.5, [28.0, EYE, 15.0], 480.0, 35.0),
     key(19.0, [28.0, EYE, 16.0], 440.0, 45.0),
     // The piano, close up, standing still.
     key(22.0, [29.0, EYE, 16.6], 400.0, -18.0),

@@ -170,3 +170,37 @@ fn bytes_of(triangles: u32, vertices: u32) -> u64 {
     let index = if vertices > 1 << 16 { 4 } else { 2 };
     32 * u64::from(vertices) + 3 * index * u64::from(triangles)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn toadstool() -> Kind {
+        Kind::new("toadstool", [0.2, 0.3, 0.2])
+            .part("cap", Shape::Sphere { radius: 0.1 }, 1, &[32, 8, 0])
+            .trim("cap", Shape::Sphere { radius: 0.01 }, 20, &[8, 0, 0], 0.015)
+            .part("stem", Shape::Tube { radius: 0.02, length: 0.2 }, 1, &[16, 8, 0])
+            .part("card", Shape::StandIn { triangles: 4, vertices: 8, reach: 0.12 }, 1, &[0, 0, 1])
+            .one_draw_from(2)
+    }
+
+    #[test]
+    fn counts_are_summed_over_parts() {
+        let table = toadstool().table();
+        let counts: Vec<_> = table.levels().iter().map(|l| (l.triangles, l.vertices, l.draws)).collect();
+        let finest = (960 + 20 * 48 + 32, 482 + 20 * 26 + 32, 2);
+        assert_eq!(counts, [finest, (48 + 16, 26 + 16, 2), (4, 8, 1)]);
+    }
+
+    #[test]
+    fn the_worst_part_is_the_error() {
+        let table = toadstool().table();
+        let sphere = Shape::Sphere { radius: 0.1 };
+        let coarse = sphere.deviation(8) + sphere.deviation(32);
+        assert!(coarse > 0.015);
+        let errors: Vec<_> = table.levels().iter().map(|l| l.error.unwrap_or(f32::NAN)).collect();
+        assert_eq!(errors[0], 0.0);
+        assert!((coarse as f32..coarse as f32 + 1e-4).contains(&errors[1]));
+        assert_eq!(errors[2], 0.12);
+    }
+}

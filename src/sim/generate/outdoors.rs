@@ -28,6 +28,7 @@ pub(super) fn beech() -> Kind {
         .part("bark", Tube { radius: 0.1, length: 3.0 }, 40, &[10, 7, 4, 0, 0, 0])
         .part("leaf", cards(4.5), 1, &[0, 0, 0, 0, 0, 1])
         .one_draw_from(4)
+        .seen_to(160.0)
 }
 
 pub(super) fn spruce() -> Kind {
@@ -37,6 +38,7 @@ pub(super) fn spruce() -> Kind {
         .part("bark", Tube { radius: 0.3, length: 21.0 }, 1, &[24, 14, 8, 5, 3, 0])
         .part("needle", cards(3.0), 1, &[0, 0, 0, 0, 0, 1])
         .one_draw_from(3)
+        .seen_to(160.0)
 }
 
 pub(super) fn birch() -> Kind {
@@ -46,6 +48,7 @@ pub(super) fn birch() -> Kind {
         .part("bark", Tube { radius: 0.05, length: 2.0 }, 20, &[8, 5, 3, 0, 0])
         .part("leaf", cards(2.5), 1, &[0, 0, 0, 0, 1])
         .one_draw_from(3)
+        .seen_to(120.0)
 }
 
 /// Where the path comes close: a tree for the camera to pass within arm's reach.
@@ -99,7 +102,7 @@ pub(super) fn person(name: &str, dress: &'static str, folds: u32) -> Kind {
         .one_draw_from(3)
         .importance(1.5)
         .cost(2.0)
-        .seen_to(300.0)
+        .seen_to(60.0)
 }
 
 /// The singer: everything that a close-up asks for, 50 000 triangles.

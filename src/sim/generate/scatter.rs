@@ -17,7 +17,7 @@ const BLOCK: f64 = 90.0;
 
 /// Objects in blocks like a city's, over a square that grows with their number (100 m² each): 36 tables of one to
 /// six levels, from 12 triangles to 48 000; radii from 0.25 m to 64 m, small ones more often; one in eight of twice
-/// the importance and one in eight of half. O(objects), about 50 ns each; ids from 0, positions in metres around the
+/// the importance and one in eight of half. O(objects), about 0.1 µs each; ids from 0, positions in metres around the
 /// origin.
 pub fn scatter(objects: usize, seed: u64) -> Scene {
     let mut draft = Draft::new("scatter");

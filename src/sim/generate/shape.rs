@@ -257,7 +257,7 @@ mod tests {
         assert_eq!((block.triangles(1), block.vertices(1)), (profile.triangles(1), profile.vertices(1)));
     }
 
-    /// A closed smooth mesh has half as many triangles as vertices beyond two (Euler); its corners are the octants of
+    /// A closed smooth mesh has two vertices more than half its triangles (Euler); its corners are the octants of
     /// a sphere.
     #[test]
     fn a_rounded_block_closes_and_its_corners_are_a_sphere() {
