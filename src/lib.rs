@@ -17,3 +17,6 @@ pub mod view;
 
 #[cfg(feature = "files")]
 pub mod files;
+
+#[cfg(feature = "sim")]
+pub mod sim;

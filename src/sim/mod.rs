@@ -1,0 +1,3 @@
+//! Simulation: procedural scenes to try the selection on.
+
+pub mod generate;
