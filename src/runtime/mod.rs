@@ -465,6 +465,6 @@ fn elapsed_ms(dt_s: f32) -> f64 {
 }
 
 fn count_culled(report: &mut FrameReport, culled: &CullReport) {
-    report.visited_nodes += culled.visited_nodes;
-    report.tested_objects += culled.tested_objects;
+    report.visited_nodes += culled.nodes_visited as usize;
+    report.tested_objects += culled.objects_tested as usize;
 }

@@ -1,3 +1,16 @@
-//! Simulation: procedural scenes to try the selection on.
+//! Simulation: policies over scenes and camera paths on simulated machines, and how well they did.
+//!
+//! [`compare`] is the whole job; [`Trial`] runs one policy, [`Machine`] says how long a frame would really take, and
+//! [`Metrics`] sums up.
 
 pub mod generate;
+
+mod compare;
+mod machine;
+mod metrics;
+mod trial;
+
+pub use compare::{CompareOptions, Comparison, Policy, PolicyResult, Progress, compare};
+pub use machine::Machine;
+pub use metrics::{FrameMs, Metrics};
+pub use trial::{Camera, FrameRow, Reference, Trial};

@@ -1,0 +1,270 @@
+//! Every policy over one scene and path on one machine, under the same budget and the same noise.
+
+use super::machine::Machine;
+use super::metrics::Metrics;
+use super::trial::{Bounds, Camera, FrameRow, Reference, Trial};
+use crate::files::{CameraPath, Scene};
+use crate::frame::OptionsError;
+use crate::runtime::RuntimeOptions;
+use crate::scene::ObjectError;
+use crate::select::{
+    Coarsest, Finest, FunkhouserSequin, Predictive, Reactive, ScreenSize, ScreenSizeOptions, Selector,
+};
+
+/// A policy that can be compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Policy {
+    /// Every object at its cheapest choice.
+    Coarsest,
+    /// Every object at its finest level.
+    Finest,
+    /// Screen size with thresholds nobody tuned.
+    StaticDefault,
+    /// Screen size with the one size multiplier for the whole path that tracks the budget best, chosen in hindsight.
+    Static,
+    /// Screen size steered by the measured frame time.
+    Reactive,
+    /// The incremental rule of 1993.
+    FunkhouserSequin,
+    /// The knapsack under the predicted time.
+    Predictive,
+}
+
+impl Policy {
+    /// All of them, in the order of reports.
+    pub const ALL: [Self; 7] = [
+        Self::Coarsest,
+        Self::Finest,
+        Self::StaticDefault,
+        Self::Static,
+        Self::Reactive,
+        Self::FunkhouserSequin,
+        Self::Predictive,
+    ];
+
+    /// The name in reports and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Coarsest => "coarsest",
+            Self::Finest => "finest",
+            Self::StaticDefault => "static-default",
+            Self::Static => "static",
+            Self::Reactive => "reactive",
+            Self::FunkhouserSequin => "funkhouser-sequin",
+            Self::Predictive => "predictive",
+        }
+    }
+
+    /// The selector, for policies that need no hindsight.
+    fn selector(self, scale: f32) -> Result<Box<dyn Selector>, OptionsError> {
+        Ok(match self {
+            Self::Coarsest => Box::new(Coarsest),
+            Self::Finest => Box::new(Finest),
+            Self::StaticDefault => Box::new(ScreenSize::default()),
+            Self::Static => Box::new(ScreenSize::new(ScreenSizeOptions { scale, ..Default::default() })?),
+            Self::Reactive => Box::new(Reactive::new(Default::default())?),
+            Self::FunkhouserSequin => Box::new(FunkhouserSequin::default()),
+            Self::Predictive => Box::new(Predictive::default()),
+        })
+    }
+}
+
+/// What to compare under.
+#[derive(Clone, Debug)]
+pub struct CompareOptions {
+    /// The camera along the path.
+    pub camera: Camera,
+    /// The budget; the default is the median over frames of coarsest + 0.4 · (finest − coarsest).
+    pub budget_us: Option<f64>,
+    /// Policies, in the order of the report.
+    pub policies: Vec<Policy>,
+    /// Runtime options: the same for every policy.
+    pub runtime: RuntimeOptions,
+}
+
+impl Default for CompareOptions {
+    fn default() -> Self {
+        Self {
+            camera: Camera::default(),
+            budget_us: None,
+            policies: Policy::ALL.to_vec(),
+            runtime: RuntimeOptions::default(),
+        }
+    }
+}
+
+/// How one policy did.
+#[derive(Clone, Debug)]
+pub struct PolicyResult {
+    /// Which.
+    pub policy: Policy,
+    /// The size multiplier that hindsight chose, for [`Policy::Static`].
+    pub scale: Option<f32>,
+    /// Summary.
+    pub metrics: Metrics,
+    /// Frame by frame.
+    pub rows: Vec<FrameRow>,
+}
+
+/// How all policies did.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// The budget of every frame.
+    pub budget_us: f64,
+    /// What each frame costs at least and at most.
+    pub references: Vec<Reference>,
+    /// One per policy.
+    pub policies: Vec<PolicyResult>,
+}
+
+impl Comparison {
+    /// Mean and largest amount by which frames that cannot meet the budget exceed it at their cheapest; 0 without any.
+    pub fn shortfall_us(&self) -> (f64, f64) {
+        let over = self.references.iter().map(|r| r.coarsest_us - self.budget_us).filter(|&s| s > 0.0);
+        let (count, sum, most) =
+            over.fold((0, 0.0, 0.0), |(n, sum, most): (usize, f64, f64), s| (n + 1, sum + s, most.max(s)));
+        (if count > 0 { sum / count as f64 } else { 0.0 }, most)
+    }
+}
+
+/// Why a comparison could not be made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CompareError {
+    /// An object that cannot be stored.
+    Object(ObjectError),
+    /// An option out of its range.
+    Options(OptionsError),
+}
+
+impl std::fmt::Display for CompareError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Object(e) => e.fmt(f),
+            Self::Options(e) => e.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for CompareError {}
+
+impl From<ObjectError> for CompareError {
+    fn from(e: ObjectError) -> Self {
+        Self::Object(e)
+    }
+}
+
+impl From<OptionsError> for CompareError {
+    fn from(e: OptionsError) -> Self {
+        Self::Options(e)
+    }
+}
+
+/// How far a comparison has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// What is being run.
+    pub policy: Policy,
+    /// Frames done, over all runs.
+    pub done: usize,
+    /// Frames in all, as far as is known.
+    pub total: usize,
+}
+
+/// Runs every policy over the path. `progress` is told of every frame.
+///
+/// # Errors
+/// An object that cannot be stored, or an option out of its range.
+pub fn compare(
+    scene: &Scene,
+    path: &CameraPath,
+    machine: &Machine,
+    options: &CompareOptions,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Comparison, CompareError> {
+    let trial = Trial::new(scene, path, machine, options.camera, options.runtime)?;
+    let references = trial.references()?;
+    let budget_us = match options.budget_us {
+        Some(budget_us) if budget_us > 0.0 && budget_us.is_finite() => budget_us,
+        Some(_) => Err(OptionsError { option: "budget", rule: "must be finite and positive" })?,
+        None => default_budget_us(&references),
+    };
+    let mut run = Runs { trial, references, budget_us, fps: options.camera.fps, done: 0, total: 0, progress };
+    run.total = options.policies.iter().map(|&p| run.references.len() * runs_of(p)).sum();
+    let policies = options.policies.iter().map(|&policy| run.policy(policy)).collect::<Result<_, _>>()?;
+    Ok(Comparison { budget_us, references: run.references, policies })
+}
+
+/// The median over frames of coarsest + 0.4 · (finest − coarsest); a microsecond where nothing is ever in view.
+fn default_budget_us(references: &[Reference]) -> f64 {
+    let between = |r: &Reference| r.coarsest_us + 0.4 * (r.finest_us - r.coarsest_us);
+    let mut budgets: Vec<f64> = references.iter().map(between).collect();
+    budgets.sort_unstable_by(f64::total_cmp);
+    let (low, high) = (budgets[(budgets.len() - 1) / 2], budgets[budgets.len() / 2]);
+    ((low + high) / 2.0).max(1.0)
+}
+
+/// Trials of one comparison.
+struct Runs<'a, 'p> {
+    trial: Trial<'a>,
+    references: Vec<Reference>,
+    budget_us: f64,
+    fps: f64,
+    done: usize,
+    total: usize,
+    progress: &'p mut dyn FnMut(Progress),
+}
+
+/// Multipliers that hindsight tries first, as powers of two: from −`COARSE` to `COARSE`.
+const COARSE: i32 = 7;
+/// How often it then halves the distance to the neighbours of the best.
+const HALVINGS: usize = 5;
+
+/// How many trials a policy takes.
+fn runs_of(policy: Policy) -> usize {
+    match policy {
+        Policy::Static => 2 * COARSE as usize + 1 + 2 * HALVINGS + 1,
+        _ => 1,
+    }
+}
+
+impl Runs<'_, '_> {
+    fn policy(&mut self, policy: Policy) -> Result<PolicyResult, OptionsError> {
+        let scale = match policy {
+            Policy::Static => Some(self.scale_in_hindsight()?),
+            _ => None,
+        };
+        let rows = self.rows(policy, scale.unwrap_or(1.0), Bounds::Certify)?;
+        Ok(PolicyResult { policy, scale, metrics: Metrics::of(&rows, self.budget_us, self.fps), rows })
+    }
+
+    fn rows(&mut self, policy: Policy, scale: f32, bounds: Bounds) -> Result<Vec<FrameRow>, OptionsError> {
+        let Self { trial, references, budget_us, done, total, progress, .. } = self;
+        let mut tick = || {
+            *done += 1;
+            progress(Progress { policy, done: *done, total: *total });
+        };
+        trial.run(policy.selector(scale)?, *budget_us, bounds, references, &mut tick)
+    }
+
+    /// The multiplier of the smallest tracking: powers of two first, then ever closer around the best.
+    fn scale_in_hindsight(&mut self) -> Result<f32, OptionsError> {
+        let mut best = (f64::INFINITY, 0.0);
+        for exponent in -COARSE..=COARSE {
+            best = self.better(best, f64::from(exponent))?;
+        }
+        let mut step = 0.5;
+        for _ in 0..HALVINGS {
+            let center = best.1;
+            best = self.better(best, center - step)?;
+            best = self.better(best, center + step)?;
+            step /= 2.0;
+        }
+        Ok(best.1.exp2() as f32)
+    }
+
+    fn better(&mut self, best: (f64, f64), exponent: f64) -> Result<(f64, f64), OptionsError> {
+        let rows = self.rows(Policy::Static, exponent.exp2() as f32, Bounds::Skip)?;
+        let tracking = Metrics::of(&rows, self.budget_us, self.fps).tracking_over_budget;
+        Ok(if tracking < best.0 { (tracking, exponent) } else { best })
+    }
+}
