@@ -305,6 +305,34 @@ fn a_tree_that_was_not_updated_still_answers_right() {
     assert_eq!((ids(&objects, &visible), report.nodes_visited), (vec![ObjectId(5)], 0));
 }
 
+/// An eye so far off that its coordinates overflow, and an object beyond boxes: no box of theirs says anything.
+#[test]
+fn an_eye_at_infinity_sees_no_small_object() {
+    let huge = Sphere::new(Vec3::ZERO, 1e20);
+    let mut objects = plain(grid(20, 1.0).chain([huge]));
+    let tree = arranged(&mut objects);
+    let view = View { origin: DVec3::X * 1e300, far: f32::INFINITY, ..square() };
+    let view = lens(&view.at(Vec3::ZERO, Quat::from_xyzw(0.0, 0.794, 0.0, 0.676)));
+    assert_eq!(view.eye.x, f32::INFINITY);
+    let all: Vec<u64> = (0..objects.len() as u64).collect();
+    compare(&tree, &objects, &all, &view, &CullOptions { min_size_px: 1.0 });
+}
+
+/// Numbers so small that halving them loses a bit: relative room for rounding is no room there.
+#[test]
+fn a_scene_of_subnormal_numbers_is_seen_alike() {
+    let step = f32::from_bits(1);
+    let spheres = grid(12, step).map(|s| Sphere::new(s.center, 0.0));
+    let mut objects = plain(spheres);
+    let tree = arranged(&mut objects);
+    let all: Vec<u64> = (0..objects.len() as u64).collect();
+    for turn in 0..64 {
+        let rotation = Quat::from_rotation_y(turn as f32 * 0.1);
+        let view = View { near: step, ..square() }.at(Vec3::X * step * (turn % 7) as f32, rotation);
+        compare(&tree, &objects, &all, &lens(&view), &CullOptions::default());
+    }
+}
+
 #[test]
 fn reports_add_up() {
     let a = CullReport { visible: 1, too_far: 2, nodes_visited: 3, ..Default::default() };

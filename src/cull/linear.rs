@@ -8,7 +8,7 @@ use crate::view::Lens;
 /// Culls by testing every object. `visible` is overwritten, in ascending order of block; nothing is allocated once
 /// its capacity is as large as the number of blocks.
 ///
-/// Cost: linear in the objects, about 6 ns per object at most.
+/// Cost: linear in the objects, 2 to 9 ns for each.
 pub fn linear(
     objects: &Objects,
     lens: &Lens,

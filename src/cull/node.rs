@@ -94,11 +94,11 @@ impl Node {
         self.aabb.max.x < f32::INFINITY
     }
 
-    /// Distances from `eye` that no centre below the node is nearer or farther than, per axis.
+    /// Distances from a finite `eye` that no centre below the node is nearer or farther than, per axis.
     ///
     /// Every step of the way from a centre to its distance, and on to its size, is a rounded operation, which is
     /// monotone; the corners of the box take the same steps, so that the bounds hold to the last bit, without room
-    /// for rounding. What is not a number becomes 0 in the near bound and fails every comparison in the far one.
+    /// for rounding.
     pub fn reach(&self, eye: Vec3) -> [Vec3; 2] {
         let (below, above) = (self.aabb.min - eye, eye - self.aabb.max);
         [below.max(above).max(Vec3::ZERO), below.abs().max(above.abs())]

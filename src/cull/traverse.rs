@@ -13,7 +13,8 @@ impl BlockTree {
     /// ascending order of block; nothing is allocated once its capacity is as large as the number of blocks.
     ///
     /// The answer is that of [`linear`], always. It falls back to that where the tree cannot help: when objects have
-    /// changed since the update, and for a view that [`View::check`](crate::view::View::check) would have refused.
+    /// changed since the update, and for a lens that is not made of numbers: that of a view which
+    /// [`View::check`](crate::view::View::check) refuses, or of an eye too far from the objects' origin for an `f32`.
     ///
     /// Cost: linear in the boxes and objects at the border of the view, plus a few bytes per visible block.
     pub fn cull(
@@ -23,7 +24,7 @@ impl BlockTree {
         options: &CullOptions,
         visible: &mut Vec<VisibleBlock>,
     ) -> CullReport {
-        if !self.is_fresh(objects) || !is_sound(&lens.frustum) {
+        if !self.is_fresh(objects) || !is_sound(lens) {
             return linear(objects, lens, options, visible);
         }
         let mut traversal = Traversal { tree: self, cull: Cull::new(objects, lens, options, visible) };
@@ -34,9 +35,10 @@ impl BlockTree {
     }
 }
 
-/// Whether the planes are numbers. Nothing is in view otherwise, but a box could not tell.
-fn is_sound(frustum: &Frustum) -> bool {
-    frustum.planes.iter().all(|p| p.normal.is_finite() && !p.offset.is_nan())
+/// Whether boxes can be compared with the lens.
+fn is_sound(lens: &Lens) -> bool {
+    lens.eye.is_finite()
+        && lens.frustum.planes.iter().all(|plane| plane.normal.is_finite() && !plane.offset.is_nan())
 }
 
 /// What a node's summary says of the objects below it.
@@ -77,10 +79,16 @@ impl Traversal<'_> {
     /// Yields all live objects below a node.
     fn accept(&mut self, level: usize, index: usize, live: u32) {
         self.cull.report.objects_accepted += u64::from(live);
+        self.cull.report.visible += u64::from(live);
         let width = FAN_OUT.pow(level as u32);
-        let masks = &self.tree.live()[index * width..];
-        for (offset, &mask) in masks.iter().take(width).enumerate() {
-            self.cull.yield_block(index * width + offset, mask);
+        let mut first = index * width;
+        let masks = &self.tree.live()[first..];
+        let masks = &masks[..width.min(masks.len())];
+        for run in masks.split(|&mask| mask == 0) {
+            let blocks = first as u32..(first + run.len()) as u32;
+            let run_blocks = blocks.zip(run).map(|(block, &mask)| VisibleBlock { block, mask });
+            self.cull.visible.extend(run_blocks);
+            first += run.len() + 1;
         }
     }
 }
