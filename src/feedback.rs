@@ -66,7 +66,7 @@ pub struct Prediction {
     pub drivers: Drivers,
     /// Time by the cost model in use, not corrected.
     pub model_us: f64,
-    /// Share of the objects in view that came, went or switched, 0 to 1: how much news a measurement may hold.
+    /// Share of the objects in view that came or went, 0 to 1: how much news a measurement may hold.
     pub churn: f64,
     /// Whether a measurement of this frame may be learnt from; not so of a paused one.
     pub usable: bool,
@@ -266,7 +266,7 @@ struct Correction {
 const DRIFT: f64 = 4e-8;
 /// Variance that it gains when everything in view is exchanged: assets differ from the model by about 10 %, and a view
 /// holds many of them.
-const CHURN: f64 = 2e-3;
+const CHURN: f64 = 5e-4;
 /// Range of the estimated noise variance.
 const NOISE: (f64, f64) = (1e-4, 4e-2);
 /// Share of a measurement in the noise estimate.
@@ -301,10 +301,10 @@ impl Correction {
         true
     }
 
+    /// Follows the value with a dead band's slack: a move back within it changes nothing.
     fn apply(&mut self, dead_band: f64) {
-        if (self.value / self.applied - 1.0).abs() > dead_band {
-            self.applied = self.value;
-        }
+        let slack = 1.0 + dead_band;
+        self.applied = self.applied.clamp(self.value / slack, self.value * slack);
     }
 
     fn rescale(&mut self, factor: f64) {

@@ -119,6 +119,8 @@ struct Survey {
     best: u64,
     above: u64,
     down_to: u64,
+    /// Cost of what the classes hold now.
+    held: u64,
     /// The most that one class can cost beyond its cheapest position.
     widest: u64,
     /// The lower end of the bracket.
@@ -164,16 +166,20 @@ impl SharedKnapsack {
     /// nearly all of it where steps are small against the budget. `key` breaks ties between equal slopes, the lower
     /// first; it must be unique per class.
     ///
+    /// With `ease` below `budget` the budget has a dead band: more is bought only up to `ease`, while what is held is
+    /// kept up to `budget`. The choice is then the best for the cost that is held, held between the two; the
+    /// certificate stays that of `budget`.
+    ///
     /// The ½ follows Kellerer, Pferschy and Pisinger, *Knapsack Problems*, 2004, ch. 11: items that do not fit beside the
     /// cheapest of all others are dropped before hulls are made, and the rival that takes the critical step first is
     /// tried where it could win.
     ///
     /// Time: O(positions) and a sort of the steps inside the bracket. Allocates only to grow its scratch.
-    pub fn solve(&mut self, budget: u64, key: impl Fn(usize) -> u128) -> Outcome {
+    pub fn solve(&mut self, budget: u64, ease: u64, key: impl Fn(usize) -> u128) -> Outcome {
         let shared = self.profiles.len();
         self.choice.clear();
         self.choice.resize(self.classes.len(), 0);
-        let outcome = self.choose(budget, &key);
+        let outcome = self.choose(budget, ease.min(budget), &key);
         self.chosen.clear();
         for i in 0..self.classes.len() {
             self.chosen.push(self.class(i).positions[usize::from(self.choice[i])].item);
@@ -187,26 +193,28 @@ impl SharedKnapsack {
         self.bracket = Bracket::default();
     }
 
-    fn choose(&mut self, budget: u64, key: &impl Fn(usize) -> u128) -> Outcome {
+    fn choose(&mut self, budget: u64, ease: u64, key: &impl Fn(usize) -> u128) -> Outcome {
         let mut survey = self.survey(self.warm_bracket(), None);
         if survey.cheapest > budget {
             self.choice.fill(0);
             let shortfall = survey.cheapest - budget;
             return Outcome { shortfall, ..self.certify(budget, 0.0) };
         }
-        if survey.best <= budget {
+        let target = survey.held.clamp(ease, budget);
+        if survey.best <= target {
             self.take_all();
             return self.certify(budget, 0.0);
         }
-        if survey.widest > budget - survey.cheapest {
-            self.drop_unaffordable(budget - survey.cheapest);
+        if survey.widest > target - survey.cheapest {
+            self.drop_unaffordable(target - survey.cheapest);
             survey = self.survey(self.warm_bracket(), None);
         }
-        let critical = self.greedy(survey, budget, None, key);
+        let critical = self.greedy(survey, target, None, key);
         self.bracket.lambda = critical.lambda;
         let outcome = Outcome { steps: critical.steps, ..self.certify(budget, critical.lambda) };
+        let attainable = self.certify(target, critical.lambda);
         match critical.step {
-            Some(step) if outcome.priced_gap() > RIVAL_GAP => self.better_of(outcome, step, budget, key),
+            Some(step) if attainable.priced_gap() > RIVAL_GAP => self.better_of(outcome, step, target, key),
             _ => outcome,
         }
     }
@@ -247,6 +255,7 @@ impl SharedKnapsack {
             survey.cheapest += cheapest;
             survey.best += best;
             survey.widest = survey.widest.max(best - cheapest);
+            survey.held += class.cost(class.current.min(class.last()));
             survey.above += class.cost(above);
             survey.down_to += class.cost(down_to);
         }

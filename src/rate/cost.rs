@@ -27,10 +27,11 @@ pub enum Stages {
 
 /// The predicted time of drawing, in microseconds per unit.
 ///
-/// The default is fitted to published render-time measurements of three entry-level graphics cards (Radeon RX 550,
-/// GeForce GT 1030, UHD 730) that draw 100 to 10 000 boxes and spheres: 1.0, 1.5 and 2.0 ns per triangle with the
-/// half vertex that comes with it, and 0.4 to 0.7 µs of processor time per object. The pixel coefficient is for the
-/// area of bounding spheres, much of which an object leaves empty.
+/// The default is that of an entry-level graphics card, from published render times (Godot's nightly benchmarks, 2023–25)
+/// of a Radeon RX 550, a UHD 730 and a GeForce GT 1030 that draw 100 to 10 000 boxes of 12 and spheres of 4 224
+/// triangles: 0.1, 0.2 and 0.35 µs per object, and 1.0, 2.0 and 1.5 ns per triangle with the half vertex that comes with
+/// it. They say nothing of pixels: 0.01 ns is a tenth of a nanosecond for one pixel in ten, since the projected area is
+/// that of the bounding sphere, most of which is empty or covered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CostModel {
@@ -48,7 +49,7 @@ pub struct CostModel {
 
 impl Default for CostModel {
     fn default() -> Self {
-        Self { draw_us: 0.5, vertex_us: 0.001, triangle_us: 0.001, pixel_us: 0.000_05, stages: Stages::Sum }
+        Self { draw_us: 0.2, vertex_us: 0.001, triangle_us: 0.001, pixel_us: 0.000_01, stages: Stages::Sum }
     }
 }
 

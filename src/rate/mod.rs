@@ -114,8 +114,8 @@ impl Rows {
                 area[lane] *= model.attention(lens, &block.sphere(lane), velocity);
             }
         }
-        for lane in 0..BLOCK {
-            self.weight[lane] += area[lane] * block.gain[lane];
+        for (weight, (area, gain)) in self.weight.iter_mut().zip(area.iter().zip(&block.gain)) {
+            *weight += area * gain;
         }
         self.mask |= mask;
     }
@@ -125,11 +125,11 @@ impl Rows {
 /// (see [`Lens::area_px2`], [`Lens::size_px`], [`Lens::unit_px`]), a column at a time.
 fn project(rows: &mut Rows, block: &Block, lens: &Lens, mask: u16) -> [f32; BLOCK] {
     let mut area = [0.0; BLOCK];
-    for lane in 0..BLOCK {
+    for (lane, area) in area.iter_mut().enumerate() {
         let sphere = block.sphere(lane);
         let seen = f32::from(mask >> lane & 1);
         let (area_px2, size_px, near_px) = lens.project(&sphere);
-        area[lane] = area_px2 * seen;
+        *area = area_px2 * seen;
         rows.area_px2[lane] += area_px2 * seen;
         rows.size_px[lane] = rows.size_px[lane].max(size_px * seen);
         rows.near_px[lane] = rows.near_px[lane].max(near_px * seen);

@@ -405,7 +405,8 @@ impl Runtime {
     /// Sums up what is shown and tells feedback what to expect of it.
     fn account(&mut self, objects: &Objects, activity: Activity) {
         let (drivers, model_us) = self.tally(objects);
-        let moved = self.changes.len().min(self.report.candidates);
+        let came_or_went = |c: &&Change| c.old.is_drawn() != c.new.is_drawn();
+        let moved = self.changes.iter().filter(came_or_went).count().min(self.report.candidates);
         self.feedback.expect(Prediction {
             frame: self.report.frame,
             drivers,

@@ -18,11 +18,14 @@ pub struct PredictiveOptions {
     pub dwell_ms: u32,
     /// Price of a switch soon after another; not below `hysteresis`. The budget still goes first.
     pub dwell: f32,
+    /// Dead band of the budget, as a fraction of it: detail is added only while this much is left over, and kept until
+    /// nothing is. In 0…1, exclusive. Without it a budget that is all spent moves detail at every breath of the camera.
+    pub ease: f64,
 }
 
 impl Default for PredictiveOptions {
     fn default() -> Self {
-        Self { hysteresis: 0.1, dwell_ms: 250, dwell: 0.5 }
+        Self { hysteresis: 0.1, dwell_ms: 250, dwell: 0.5, ease: 0.01 }
     }
 }
 
@@ -35,7 +38,8 @@ impl PredictiveOptions {
         let price = |x: f32| (0.0..1.0).contains(&x);
         OptionsError::unless(price(self.hysteresis), "hysteresis", "must be at least 0 and below 1")?;
         let dwell = price(self.dwell) && self.dwell >= self.hysteresis;
-        OptionsError::unless(dwell, "dwell", "must be at least the hysteresis and below 1")
+        OptionsError::unless(dwell, "dwell", "must be at least the hysteresis and below 1")?;
+        OptionsError::unless((0.0..1.0).contains(&self.ease), "ease", "must be at least 0 and below 1")
     }
 
     fn price(&self, previous: Option<Level>, age_ms: u32) -> f32 {
@@ -148,7 +152,9 @@ impl Selector for Predictive {
         let fixed = self.fill_classes(frame);
         let budget = (frame.budget.select_us.max(0.0) * self.hulls.ticks_per_us) as u64;
         let over = fixed.saturating_sub(budget);
-        let outcome = self.knapsack.solve(budget.saturating_sub(fixed), |i| frame.key(i));
+        let ease = (budget as f64 * (1.0 - self.options.ease)) as u64;
+        let free = |ticks: u64| ticks.saturating_sub(fixed);
+        let outcome = self.knapsack.solve(free(budget), free(ease), |i| frame.key(i));
         self.knapsack.profiles.truncate(self.hulls.shared_count as usize);
         for (level, &chosen) in levels.iter_mut().zip(&self.knapsack.chosen) {
             *level = Level(chosen);

@@ -13,4 +13,4 @@ mod trial;
 pub use compare::{CompareOptions, Comparison, Policy, PolicyResult, Progress, compare};
 pub use machine::Machine;
 pub use metrics::{FrameMs, Metrics};
-pub use trial::{Camera, FrameRow, Reference, Trial};
+pub use trial::{Bounds, Camera, FrameRow, Reference, Trial};

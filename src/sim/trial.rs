@@ -194,7 +194,7 @@ const REVERSAL_S: f64 = 1.0;
 
 impl<'a> Judge<'a> {
     fn new(machine: &'a Machine, bounds: Bounds) -> Self {
-        let free = PredictiveOptions { hysteresis: 0.0, dwell_ms: 0, dwell: 0.0 };
+        let free = PredictiveOptions { hysteresis: 0.0, dwell_ms: 0, dwell: 0.0, ease: 0.0 };
         Self {
             machine,
             bounds,
@@ -225,13 +225,13 @@ impl<'a> Judge<'a> {
             rates: self.machine.rates(),
             model: self.machine.model(),
             candidates: &self.seen,
-            budget: Budget { frame_us: spent_us, target_us: spent_us, select_us: spent_us },
+            budget: outward(spent_us, self.shown.len()),
             ..runtime.last_frame(objects)
         };
         let benefit = frame.report(&self.shown).benefit;
         let gain_over_bound = match self.bounds {
-            Bounds::Skip => None,
-            Bounds::Certify => gain_over_bound(&mut self.oracle, &mut self.levels, &frame, benefit),
+            Bounds::Certify if spent_us > reference.coarsest_us * (1.0 + ROUNDING) => gain_over_bound(&mut self.oracle, &mut self.levels, &frame, benefit),
+            _ => None,
         };
         let report = runtime.report();
         FrameRow {
@@ -263,6 +263,15 @@ impl<'a> Judge<'a> {
         }
         (switches, reversals)
     }
+}
+
+/// Relative room for the rounding of sums of costs.
+const ROUNDING: f64 = 1e-9;
+
+/// The budget that holds a selection of this cost when each of its costs is rounded up to a tick of the knapsack.
+fn outward(spent_us: f64, objects: usize) -> Budget {
+    let select_us = spent_us * (1.0 + ROUNDING) + objects as f64 * 1e-6;
+    Budget { frame_us: spent_us, target_us: spent_us, select_us }
 }
 
 /// Gain of `benefit` over the cheapest choice against the bound at the frame's budget.
