@@ -36,7 +36,7 @@
 //! Unknown keys, duplicate keys and numbers that a 32-bit float cannot hold are refused. Distances are in metres by
 //! convention; nothing depends on it.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 
 use glam::Vec3;
@@ -155,6 +155,9 @@ impl Document {
     fn into_scene(self, file: &str) -> Result<Scene, FileError> {
         let name = self.name.unwrap_or_else(|| disk::stem(file));
         let tables = self.tables.0.into_iter().map(|t| t.into_table(file)).collect::<Result<Vec<_>, _>>()?;
+        if let Some(name) = doubled_name(&tables) {
+            return Err(FileError::at(file, format!("table '{name}'"), ONE_NAME));
+        }
         let by_name = tables.iter().enumerate().map(|(i, t)| (t.name(), i)).collect();
         let objects = self.objects.0.iter().map(|o| o.to_object(&by_name, file));
         let objects = objects.collect::<Result<Vec<_>, _>>()?;
@@ -162,14 +165,18 @@ impl Document {
     }
 }
 
+const ONE_NAME: &str = "there must be no other table of that name";
+
+/// A name that a table has in common with one before it.
+fn doubled_name(tables: &[LodTable]) -> Option<&str> {
+    let mut names = HashSet::new();
+    tables.iter().map(LodTable::name).find(|name| !names.insert(*name))
+}
+
 /// What the format cannot hold, and where.
 fn broken_rule(scene: &Scene) -> Option<(Option<String>, String)> {
-    let mut names = HashMap::new();
-    for table in &scene.tables {
-        if names.insert(table.name(), ()).is_some() {
-            let rule = "there must be no other table of that name";
-            return Some((Some(format!("table '{}'", table.name())), rule.to_owned()));
-        }
+    if let Some(name) = doubled_name(&scene.tables) {
+        return Some((Some(format!("table '{name}'")), ONE_NAME.to_owned()));
     }
     if let Some(broken) = scene.objects.iter().find(|o| !o.bounds.is_valid()) {
         let rule = "center and radius must be finite, and the radius not negative";
