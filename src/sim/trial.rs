@@ -230,7 +230,9 @@ impl<'a> Judge<'a> {
         };
         let benefit = frame.report(&self.shown).benefit;
         let gain_over_bound = match self.bounds {
-            Bounds::Certify if spent_us > reference.coarsest_us * (1.0 + ROUNDING) => gain_over_bound(&mut self.oracle, &mut self.levels, &frame, benefit),
+            Bounds::Certify if spent_us > reference.coarsest_us * (1.0 + ROUNDING) => {
+                gain_over_bound(&mut self.oracle, &mut self.levels, &frame, benefit)
+            }
             _ => None,
         };
         let report = runtime.report();
