@@ -18,8 +18,8 @@ pub struct ReactiveOptions {
     pub size: ScreenSizeOptions,
     /// Half the width of the dead band around the target, as a fraction. Narrower tracks closer and hunts sooner.
     pub dead_band: f32,
-    /// Share of the relative error that is corrected per measurement. With measurements two frames late, values above
-    /// about 0.3 oscillate.
+    /// Share of the relative error that is corrected per measurement. With measurements two frames late, values near 1
+    /// oscillate; a long dwell delays the answer as well, and wants a smaller share.
     pub gain: f32,
     /// The most that the factor rises per measurement, as a fraction.
     pub rise: f32,
@@ -32,12 +32,12 @@ pub struct ReactiveOptions {
 impl Default for ReactiveOptions {
     fn default() -> Self {
         Self {
-            size: ScreenSizeOptions::default(),
+            size: ScreenSizeOptions { dwell_ms: 100, ..ScreenSizeOptions::default() },
             dead_band: 0.04,
-            gain: 0.2,
-            rise: 0.03,
-            fall: 0.08,
-            range: (1e-3, 1e3),
+            gain: 0.5,
+            rise: 0.1,
+            fall: 0.2,
+            range: (1e-6, 1e6),
         }
     }
 }

@@ -10,7 +10,8 @@ use crate::table::Level;
 /// What decides that a level is good enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measure {
-    /// Its geometric error, projected at the object's nearest point, is at most so many pixels.
+    /// Its geometric error, projected at the distance of the object's centre, is at most so many pixels. (At the nearest
+    /// point, an object that contains the eye would be finest at any price.)
     ErrorPx(f32),
     /// The object is smaller than its author's size for the next finer level ([`crate::table::LevelRecord::min_size`]).
     /// Tables that do not say fall back to the error in pixels.
@@ -65,8 +66,8 @@ impl ScreenSizeOptions {
         let candidates = frame.candidates;
         let allowed = candidates.allowed[i];
         let levels = frame.rates.levels(candidates.table[i]);
-        let size = candidates.size_px[i] / height_px;
-        let needed = |scale: f32| self.needed(levels, allowed, size * scale, candidates.near_px[i] * scale);
+        let size_px = candidates.size_px[i];
+        let needed = |scale: f32| self.needed(levels, allowed, size_px * scale, height_px);
         let wanted = match candidates.previous[i] {
             None => needed(scale),
             Some(previous) => {
@@ -94,16 +95,16 @@ impl ScreenSizeOptions {
         }
     }
 
-    /// The coarsest level that is good enough at this size (fraction of the viewport's height) and projected radius.
-    fn needed(&self, levels: &[LevelRate], allowed: LevelRange, size: f32, near_px: f32) -> Level {
+    /// The coarsest level that is good enough at this projected diameter.
+    fn needed(&self, levels: &[LevelRate], allowed: LevelRange, size_px: f32, height_px: f32) -> Level {
         let finest = allowed.finest.index();
         let coarsest = allowed.coarsest.index().min(levels.len() - 1);
         let choice = &levels[finest..=coarsest];
         let found = match self.measure {
-            Measure::Authored { .. } if choice.iter().all(|l| !l.min_size.is_nan()) => {
-                Some(choice.iter().position(|l| size >= l.min_size).unwrap_or(choice.len() - 1))
-            }
-            _ => choice.iter().rposition(|l| l.error * near_px <= self.measure.error_px()),
+            Measure::Authored { .. } if choice.iter().all(|l| !l.min_size.is_nan()) => Some(
+                choice.iter().position(|l| size_px >= l.min_size * height_px).unwrap_or(choice.len() - 1),
+            ),
+            _ => choice.iter().rposition(|l| l.error * size_px * 0.5 <= self.measure.error_px()),
         };
         Level((finest + found.unwrap_or(0)) as u8)
     }
