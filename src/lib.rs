@@ -15,5 +15,8 @@ pub mod table;
 pub mod transition;
 pub mod view;
 
+#[cfg(feature = "hecs")]
+pub mod ecs;
+
 #[cfg(feature = "files")]
 pub mod files;
