@@ -234,12 +234,14 @@ proptest! {
         let (mut through_world, mut by_hand) = (runtime(kind), runtime(kind));
         let (mut times, mut times_by_hand) = (Vec::new(), Vec::new());
         let mut twins = Twins::new();
+        let mut changes = 0;
         for (frame, ops) in script.iter().enumerate() {
             ops.iter().for_each(|op| twins.apply(op));
             prop_assert!(twins.sync(only).is_ok());
             run_frame(&mut through_world, &mut twins.synced, &mut times);
             run_frame(&mut by_hand, &mut twins.direct, &mut times_by_hand);
             prop_assert_eq!(through_world.changes(), by_hand.changes());
+            changes += by_hand.changes().len();
             prop_assert_eq!(without_culling(through_world.report()), without_culling(by_hand.report()));
             twins.bridge.write_back::<0>(&mut twins.world, &twins.synced, &through_world);
             twins.assert_shown::<0>(&through_world);
@@ -248,7 +250,7 @@ proptest! {
                 twins.assert_shown::<1>(&through_world);
             }
         }
-        prop_assert!(times.iter().any(|t| t.time_us > 0.0) || twins.entities.is_empty());
+        prop_assert!(changes > 0);
     }
 }
 
