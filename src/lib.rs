@@ -15,6 +15,9 @@ pub mod table;
 pub mod transition;
 pub mod view;
 
+#[cfg(feature = "hecs")]
+pub mod ecs;
+
 #[cfg(feature = "files")]
 pub mod files;
 

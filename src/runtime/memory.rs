@@ -26,7 +26,7 @@ impl SlotState {
 #[derive(Clone, Debug)]
 pub(super) struct GroupMemory {
     pub id: GroupId,
-    /// The group's own count of frames, from 1.
+    /// The group's own count of frames. The first is 2, so that no slot seems to have been seen in the one before.
     frame: u32,
     clock_ms: f64,
     states: Vec<SlotState>,
@@ -46,7 +46,7 @@ pub(super) fn of_group(groups: &mut Vec<GroupMemory>, id: GroupId) -> &mut Group
 
 impl GroupMemory {
     fn new(id: GroupId) -> Self {
-        Self { id, frame: 0, clock_ms: 0.0, states: Vec::new(), visible: Vec::new(), before: Vec::new() }
+        Self { id, frame: 1, clock_ms: 0.0, states: Vec::new(), visible: Vec::new(), before: Vec::new() }
     }
 
     /// Starts a frame at `clock_ms` over so many slots; returns the time since the group's last one.
@@ -175,5 +175,20 @@ impl Layout {
         self.tenants.clear();
         self.tenants
             .extend((0..objects.blocks().len() * crate::scene::BLOCK).map(|slot| objects.id_of(slot)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_remembered_in_the_first_frame() {
+        let mut memory = GroupMemory::new(GroupId(0));
+        memory.begin_frame(1, 0.0);
+        assert!(memory.recall(0).is_none());
+        memory.enter(0, Level(1));
+        memory.begin_frame(1, 16.0);
+        assert!(memory.recall(0).is_some());
     }
 }
