@@ -3,6 +3,7 @@
 #![warn(missing_docs)]
 
 pub mod bounds;
+pub mod check;
 pub mod cull;
 pub mod feedback;
 pub mod frame;

@@ -81,6 +81,11 @@ pub struct Settings {
     pub velocity: Vec3,
 }
 
+/// The most that importance · bias² may be: benefits of whole screens of such objects are still summed exactly.
+const MOST_GAIN: f32 = 1e12;
+/// The most that a cost multiplier may be: the ticks that costs are counted in still hold the cost of many.
+const MOST_COST: f32 = 1e6;
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -115,8 +120,14 @@ impl Settings {
             Some("importance must be finite and not negative")
         } else if !is_factor(self.bias) {
             Some("bias must be finite and positive")
+        } else if self.importance * (self.bias * self.bias) > MOST_GAIN
+            || !(self.bias * self.bias).is_finite()
+        {
+            Some("importance times bias squared must be at most 1e12")
         } else if !is_factor(self.cost_multiplier) {
             Some("cost_multiplier must be finite and positive")
+        } else if self.cost_multiplier > MOST_COST {
+            Some("cost_multiplier must be at most 1e6")
         } else if !self.clamp.is_valid() || !self.resident.is_valid() {
             Some("a range of levels must go from a finer level to a coarser one that is drawn")
         } else if self.forced.is_some_and(|l| !l.is_drawn()) {
@@ -620,6 +631,9 @@ mod tests {
         let settings = Settings { bias: 0.0, ..Settings::default() };
         let flat = store.set_settings(ObjectId(0), settings).expect_err("no size");
         assert_eq!(flat.to_string(), "object 0: bias must be finite and positive");
+        let settings = Settings { importance: 0.0, bias: 1e30, ..Settings::default() };
+        let vast = store.set_settings(ObjectId(0), settings).expect_err("no benefit");
+        assert_eq!(vast.to_string(), "object 0: importance times bias squared must be at most 1e12");
     }
 
     #[test]

@@ -252,12 +252,12 @@ impl SharedKnapsack {
                 self.undecided.push(Undecided { slope: class.slope(from), class: i as u32, from });
             }
             let (cheapest, best) = (class.cost(0), class.cost(class.last()));
-            survey.cheapest += cheapest;
-            survey.best += best;
+            survey.cheapest = survey.cheapest.saturating_add(cheapest);
+            survey.best = survey.best.saturating_add(best);
             survey.widest = survey.widest.max(best - cheapest);
-            survey.held += class.cost(class.current.min(class.last()));
-            survey.above += class.cost(above);
-            survey.down_to += class.cost(down_to);
+            survey.held = survey.held.saturating_add(class.cost(class.current.min(class.last())));
+            survey.above = survey.above.saturating_add(class.cost(above));
+            survey.down_to = survey.down_to.saturating_add(class.cost(down_to));
         }
         survey
     }
@@ -331,17 +331,18 @@ impl SharedKnapsack {
         for i in 0..self.classes.len() {
             let class = Class::new(&self.profiles, &self.classes, i);
             if let Some(pin) = pin.filter(|p| p.class == i) {
-                spent += class.cost(pin.position);
+                spent = class.cost(pin.position).saturating_add(spent);
                 continue;
             }
-            spent += class.cost(0);
+            spent = class.cost(0).saturating_add(spent);
             for from in 0..class.last() {
                 let bucket = class.slope(from).to_bits() >> BUCKET_SHIFT;
-                self.histogram[bucket as usize] += class.cost(from + 1) - class.cost(from);
+                let bucket = &mut self.histogram[bucket as usize];
+                *bucket = bucket.saturating_add(class.cost(from + 1) - class.cost(from));
             }
         }
         let critical = (0..BUCKETS).rev().find(|&bucket| {
-            spent += self.histogram[bucket];
+            spent = self.histogram[bucket].saturating_add(spent);
             spent > budget
         });
         let edge = |bucket: usize| f32::from_bits((bucket as u32) << BUCKET_SHIFT).max(f32::MIN_POSITIVE);
@@ -405,14 +406,17 @@ impl SharedKnapsack {
         for i in 0..self.classes.len() {
             let class = Class::new(&self.profiles, &self.classes, i);
             let mut from = self.choice[i];
-            while !self.blocked[i] && class.slope(from) >= low {
-                self.blocked[i] = class.cost(from + 1) - class.cost(from) > room;
-                if !self.blocked[i] {
+            let mut fits = !self.blocked[i];
+            while fits && class.slope(from) >= low {
+                fits = class.cost(from + 1) - class.cost(from) <= room;
+                if fits {
                     self.undecided.push(Undecided { slope: class.slope(from), class: i as u32, from });
                     from += 1;
                 }
             }
-            open |= !self.blocked[i] && from < class.last();
+            // Steps collected before the one that does not fit may still be taken.
+            self.blocked[i] |= !fits && from == self.choice[i];
+            open |= fits && from < class.last();
         }
         open || !self.undecided.is_empty()
     }
@@ -531,14 +535,14 @@ impl<'a> Class<'a> {
     }
 }
 
-/// Ticks times scale, rounded up.
+/// Ticks times scale, rounded up, and held to what 64 bits hold: so do all sums of costs, which then are beyond any budget.
 fn scaled(ticks: u64, scale: f32) -> u64 {
     if scale == 1.0 {
         return ticks;
     }
     let product = ticks as f64 * f64::from(scale);
     let floor = product as u64;
-    floor + u64::from((floor as f64) < product)
+    floor.saturating_add(u64::from((floor as f64) < product))
 }
 
 /// The sums behind an [`Outcome`], of any order of classes.
@@ -556,16 +560,16 @@ struct Sums {
 
 impl Sums {
     fn add(&mut self, class: &Class<'_>, choice: u8, lambda: f64) {
-        self.cost += class.cost(choice);
+        self.cost = self.cost.saturating_add(class.cost(choice));
         self.benefit.add(class.plain(choice));
         self.minimum.add(class.plain(0));
         self.priced.add(class.priced(choice));
         let best = class.best(lambda, Class::plain);
         self.bound.add(class.plain(best));
-        self.bound_cost += class.cost(best);
+        self.bound_cost = self.bound_cost.saturating_add(class.cost(best));
         let best = if class.stay == 0.0 { best } else { class.best(lambda, Class::priced) };
         self.priced_bound.add(class.priced(best));
-        self.priced_bound_cost += class.cost(best);
+        self.priced_bound_cost = self.priced_bound_cost.saturating_add(class.cost(best));
     }
 
     /// Bounds are widened by what rounding can hide: 2⁻³² per term of a sum, two ticks per class for scaled costs, and

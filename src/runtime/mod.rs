@@ -335,10 +335,12 @@ impl Runtime {
 
     /// Leads what is shown towards what is wanted, and lists what has changed.
     fn show(&mut self, objects: &Objects) {
+        let spare = f64::from(self.options.transition.reserve) * self.report.budget.target_us;
+        let mut reserve_us = (spare - self.report.fades_us).max(0.0);
         for run in 0..self.scratch.candidates.ends.len() {
             let group = self.scratch.candidates.ends[run].group;
             self.note_wanted(objects, group);
-            self.grant_requests(objects, group);
+            self.grant_requests(objects, group, &mut reserve_us);
             let memory = memory::of_group(&mut self.groups, group);
             memory.end_frame(objects, &mut self.changes);
         }
@@ -370,15 +372,14 @@ impl Runtime {
         }
     }
 
-    /// Starts, aborts and retargets transitions, in the order of ids, while the fade reserve lasts.
-    fn grant_requests(&mut self, objects: &Objects, group: GroupId) {
+    /// Starts, aborts and retargets transitions, in the order of ids, while the fade reserve lasts, which is one for all
+    /// groups.
+    fn grant_requests(&mut self, objects: &Objects, group: GroupId, reserve_us: &mut f64) {
         let options = self.options.transition;
         let mut requests = std::mem::take(&mut self.scratch.requests);
         if options.kind != TransitionKind::Hard {
             requests.sort_unstable_by_key(|&i| objects.id_of(self.scratch.candidates.slot[i] as usize));
         }
-        let spare = f64::from(options.reserve) * self.report.budget.target_us - self.report.fades_us;
-        let mut reserve_us = spare.max(0.0);
         for &i in &requests {
             let slot = self.scratch.candidates.slot[i];
             let to = self.scratch.levels[i];
@@ -386,7 +387,7 @@ impl Runtime {
             let price = |level| cost_us(self.feedback.model(), &self.rates, candidates, i, level);
             let memory = memory::of_group(&mut self.groups, group);
             let before = memory.state(slot).shown;
-            let after = follow(before, to, &options, price, &mut reserve_us);
+            let after = follow(before, to, &options, price, reserve_us);
             memory.state(slot).shown = after;
             if before.level != after.level {
                 self.push_change(objects, i, before.level, after);

@@ -6,6 +6,7 @@ use std::collections::BinaryHeap;
 use super::{Frame, Selector};
 use crate::frame::OptionsError;
 use crate::frame::SelectReport;
+use crate::knapsack::FixedSum;
 use crate::scene::LevelRange;
 use crate::table::Level;
 
@@ -44,14 +45,15 @@ impl FunkhouserSequin {
         Ok(Self { hysteresis, ..Self::default() })
     }
 
-    fn start(&mut self, frame: &Frame<'_>, levels: &mut [Level]) -> f64 {
+    /// Last frame's levels, and what they cost in a sum that does not depend on the order of slots.
+    fn start(&mut self, frame: &Frame<'_>, levels: &mut [Level]) -> FixedSum {
         self.raise.clear();
         self.lower.clear();
-        let mut cost = 0.0;
+        let mut cost = FixedSum::default();
         for (i, level) in levels.iter_mut().enumerate() {
             let kept = frame.candidates.previous[i].filter(|&l| holds(frame.candidates.allowed[i], l));
             *level = kept.unwrap_or_else(|| frame.minimum(i));
-            cost += frame.cost_us(i, *level);
+            cost.add(frame.cost_us(i, *level));
             self.offer(frame, i, *level);
         }
         cost
@@ -79,11 +81,11 @@ impl FunkhouserSequin {
         if cost > 0.0 { benefit / cost } else { f64::INFINITY }
     }
 
-    fn change(&mut self, frame: &Frame<'_>, i: usize, levels: &mut [Level], to: Level) -> f64 {
-        let difference = frame.cost_us(i, to) - frame.cost_us(i, levels[i]);
+    fn change(&mut self, frame: &Frame<'_>, i: usize, levels: &mut [Level], to: Level, cost: &mut FixedSum) {
+        cost.add(-frame.cost_us(i, levels[i]));
+        cost.add(frame.cost_us(i, to));
         levels[i] = to;
         self.offer(frame, i, to);
-        difference
     }
 }
 
@@ -166,14 +168,14 @@ impl Selector for FunkhouserSequin {
             let raised = next(&mut self.raise, levels);
             if let Some(i) = raised {
                 let to = finer(frame, i, levels[i]).unwrap_or(levels[i]);
-                cost += self.change(frame, i, levels, to);
+                self.change(frame, i, levels, to, &mut cost);
                 steps += 1;
             }
             let mut undone = false;
-            while cost > budget {
+            while cost.value() > budget {
                 let Some(i) = next(&mut self.lower, levels) else { break };
                 let to = coarser(frame, i, levels[i]).unwrap_or(levels[i]);
-                cost += self.change(frame, i, levels, to);
+                self.change(frame, i, levels, to, &mut cost);
                 undone |= raised == Some(i);
                 steps += 1;
             }

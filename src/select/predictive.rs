@@ -105,13 +105,14 @@ impl Predictive {
     fn share_hulls(&mut self, frame: &Frame<'_>) -> u64 {
         let candidates = frame.candidates;
         let pixel_ticks = frame.model.pixel_us * self.hulls.ticks_per_us;
-        let mut fixed = 0;
+        let mut fixed = 0u64;
         for i in 0..candidates.len() {
             let (table, allowed) = (candidates.table[i], candidates.allowed[i]);
             let profile = if has_own_hull(frame, i) {
                 OWN
             } else {
-                fixed += ceil_ticks(pixel_ticks * f64::from(candidates.area_px2[i]));
+                let pixels = ceil_ticks(pixel_ticks * f64::from(candidates.area_px2[i]));
+                fixed = pixels.saturating_add(fixed);
                 self.hulls.shared(table, allowed, frame.rates, &mut self.knapsack)
             };
             self.knapsack.classes.profile.push(profile);
@@ -135,9 +136,9 @@ impl Predictive {
             penalised_gap: outcome.priced_gap(),
             lambda: self.lambda,
         };
-        let shortfall = outcome.shortfall + over;
+        let shortfall = outcome.shortfall.saturating_add(over);
         SelectReport {
-            cost_us: (outcome.cost + fixed) as f64 * us_per_tick,
+            cost_us: outcome.cost.saturating_add(fixed) as f64 * us_per_tick,
             benefit: outcome.benefit,
             certificate: (shortfall == 0).then_some(certificate),
             infeasible_us: shortfall as f64 * us_per_tick,

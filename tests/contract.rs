@@ -1,0 +1,161 @@
+//! The contract of selection, held against every policy over random scenes, cameras, budgets and options.
+
+mod scenes;
+
+use lod_budget::check::{self, Promise, Replay};
+use lod_budget::frame::{Change, FrameReport, GroupId};
+use lod_budget::runtime::{FrameInput, Runtime, RuntimeOptions};
+use lod_budget::scene::{ObjectId, Objects};
+use lod_budget::transition::Shown;
+use proptest::prelude::*;
+use scenes::{
+    BudgetOf, Cameras, POLICIES, Policy, Scene, budget, film, inputs, measured, options, reorder, shuffled,
+};
+
+/// Everything a run depends on.
+#[derive(Clone, Debug)]
+struct Trial {
+    scene: Scene,
+    film: Vec<Cameras>,
+    options: RuntimeOptions,
+    budget: BudgetOf,
+    /// Frames that measurements come late by, and how much slower the machine is than predicted.
+    late: u64,
+    ratio: f64,
+}
+
+fn trial() -> impl Strategy<Value = Trial> {
+    (scenes::scene(), film(1..7), options(), budget(), 0u64..4, 0.6f64..1.6).prop_map(
+        |(scene, film, options, budget, late, ratio)| Trial { scene, film, options, budget, late, ratio },
+    )
+}
+
+/// What is remembered of a frame.
+#[derive(Clone, Debug, PartialEq)]
+struct Record {
+    changes: Vec<Change>,
+    report: FrameReport,
+    shown: Vec<(GroupId, ObjectId, Shown)>,
+}
+
+impl Record {
+    fn of(runtime: &Runtime, objects: &Objects) -> Self {
+        // How much culling looks at depends on the slots.
+        let report = FrameReport { visited_nodes: 0, tested_objects: 0, ..*runtime.report() };
+        let groups = (0..4).map(GroupId);
+        let mut shown: Vec<_> = groups
+            .flat_map(|group| runtime.shown_slots(group).map(move |(slot, shown)| (group, slot, shown)))
+            .map(|(group, slot, shown)| (group, objects.id_of(slot).unwrap_or_default(), shown))
+            .collect();
+        shown.sort_by_key(|&(group, id, _)| (group, id));
+        Self { changes: runtime.changes().to_vec(), report, shown }
+    }
+}
+
+impl Trial {
+    fn runtime(&self, policy: Policy) -> Runtime {
+        Runtime::new(self.options, policy.selector()).expect("good options")
+    }
+
+    /// What the cheapest choice of the first frame costs.
+    fn minimum_us(&self) -> f64 {
+        let mut runtime = self.runtime(Policy::Coarsest);
+        let views = self.film.first().map(inputs).unwrap_or_default();
+        runtime.frame(&mut self.scene.store(), &FrameInput::new(&views, 0.0)).select.cost_us
+    }
+
+    /// Runs frames from number `first` on, and tells `each` about every one.
+    fn run(
+        &self,
+        runtime: &mut Runtime,
+        objects: &mut Objects,
+        budget_us: f64,
+        film: &[Cameras],
+        mut each: impl FnMut(&Runtime, &mut Objects, &FrameInput<'_>) -> Result<(), TestCaseError>,
+    ) -> Result<(), TestCaseError> {
+        let mut predicted_us = Vec::new();
+        for (n, cameras) in film.iter().enumerate() {
+            let views = inputs(cameras);
+            let measured = measured(n as u64 + 1, &predicted_us, self.late, self.ratio);
+            let input = FrameInput { measured: &measured, ..FrameInput::new(&views, budget_us) };
+            predicted_us.push(runtime.frame(objects, &input).predicted_us);
+            each(runtime, objects, &input)?;
+        }
+        Ok(())
+    }
+
+    fn records(&self, runtime: &mut Runtime, objects: &mut Objects, reordering: Option<u64>) -> Vec<Record> {
+        let mut records = Vec::new();
+        let budget_us = self.budget.us(self.minimum_us());
+        let run = self.run(runtime, objects, budget_us, &self.film, |runtime, objects, _| {
+            records.push(Record::of(runtime, objects));
+            if let Some(seed) = reordering {
+                reorder(objects, seed + records.len() as u64);
+            }
+            Ok(())
+        });
+        assert!(run.is_ok(), "recording does not fail");
+        records
+    }
+}
+
+fn fail(violation: check::Violation) -> TestCaseError {
+    TestCaseError::fail(violation.to_string())
+}
+
+/// Exhaustive search is affordable.
+fn is_small(runtime: &Runtime, objects: &Objects) -> bool {
+    let frame = runtime.last_frame(objects);
+    frame.candidates.len() <= 8
+}
+
+proptest! {
+    #[test]
+    fn every_policy_keeps_the_contract(trial in trial()) {
+        let budget_us = trial.budget.us(trial.minimum_us());
+        for policy in POLICIES {
+            let mut replay = Replay::new(trial.options);
+            let (mut runtime, mut objects) = (trial.runtime(policy), trial.scene.store());
+            trial.run(&mut runtime, &mut objects, budget_us, &trial.film, |runtime, objects, input| {
+                replay.frame(runtime, objects, input, policy.promise()).map_err(fail)?;
+                if policy.promise() == Promise::Budget && is_small(runtime, objects) {
+                    check::bound(&runtime.last_frame(objects), &runtime.report().select).map_err(fail)?;
+                }
+                for object in &trial.scene.objects {
+                    for group in (0..3).map(GroupId) {
+                        if let Some(explained) = runtime.explain(objects, group, object.id) {
+                            prop_assert_eq!(explained.shown, runtime.shown(objects, group, object.id));
+                        }
+                    }
+                }
+                Ok(())
+            })?;
+        }
+    }
+
+    #[test]
+    fn neither_insertion_nor_slots_change_a_decision(trial in trial(), seed in any::<u64>()) {
+        let order = shuffled(trial.scene.objects.len(), seed);
+        for policy in POLICIES {
+            let plain = trial.records(&mut trial.runtime(policy), &mut trial.scene.store(), None);
+            let mut shuffled = trial.scene.store_in(order.iter().copied());
+            let other = trial.records(&mut trial.runtime(policy), &mut shuffled, Some(seed >> 1));
+            prop_assert_eq!(plain, other, "{:?}", policy);
+        }
+    }
+
+    #[test]
+    fn a_clone_continues_alike_and_a_reset_starts_afresh(trial in trial()) {
+        for policy in POLICIES {
+            let (mut runtime, mut objects) = (trial.runtime(policy), trial.scene.store());
+            let first = trial.records(&mut runtime, &mut objects, None);
+            let (mut twin, mut twins) = (runtime.clone(), objects.clone());
+            let on = trial.records(&mut runtime, &mut objects, None);
+            let too = trial.records(&mut twin, &mut twins, None);
+            prop_assert_eq!(on, too, "{:?}", policy);
+            runtime.reset();
+            let again = trial.records(&mut runtime, &mut objects, None);
+            prop_assert_eq!(first, again, "{:?}", policy);
+        }
+    }
+}
