@@ -1,7 +1,10 @@
 //! Every policy over one scene and path on one machine, under the same budget and the same noise.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use super::machine::Machine;
 use super::metrics::Metrics;
+use super::threads::in_parallel;
 use super::trial::{Bounds, Camera, FrameRow, Reference, Trial};
 use crate::files::{CameraPath, Scene};
 use crate::frame::OptionsError;
@@ -42,6 +45,11 @@ impl Policy {
         Self::Predictive,
     ];
 
+    /// The policy of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|policy| policy.name() == name)
+    }
+
     /// The name in reports and on the command line.
     pub fn name(self) -> &'static str {
         match self {
@@ -80,6 +88,8 @@ pub struct CompareOptions {
     pub policies: Vec<Policy>,
     /// Runtime options: the same for every policy.
     pub runtime: RuntimeOptions,
+    /// How many threads to run on; results do not depend on it.
+    pub threads: usize,
 }
 
 impl Default for CompareOptions {
@@ -89,6 +99,7 @@ impl Default for CompareOptions {
             budget_us: None,
             policies: Policy::ALL.to_vec(),
             runtime: RuntimeOptions::default(),
+            threads: 1,
         }
     }
 }
@@ -162,7 +173,7 @@ impl From<OptionsError> for CompareError {
 /// How far a comparison has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// What is being run.
+    /// What is being run; several at a time on several threads.
     pub policy: Policy,
     /// Frames done, over all runs.
     pub done: usize,
@@ -170,7 +181,7 @@ pub struct Progress {
     pub total: usize,
 }
 
-/// Runs every policy over the path. `progress` is told of every frame.
+/// Runs every policy over the path. `progress` is told of every frame, from whichever thread ran it.
 ///
 /// # Errors
 /// An object that cannot be stored, or an option out of its range.
@@ -179,8 +190,9 @@ pub fn compare(
     path: &CameraPath,
     machine: &Machine,
     options: &CompareOptions,
-    progress: &mut dyn FnMut(Progress),
+    progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Comparison, CompareError> {
+    options.camera.check(path)?;
     let trial = Trial::new(scene, path, machine, options.camera, options.runtime)?;
     let references = trial.references()?;
     let budget_us = match options.budget_us {
@@ -188,10 +200,12 @@ pub fn compare(
         Some(_) => Err(OptionsError { option: "budget", rule: "must be finite and positive" })?,
         None => default_budget_us(&references),
     };
-    let mut run = Runs { trial, references, budget_us, fps: options.camera.fps, done: 0, total: 0, progress };
-    run.total = options.policies.iter().map(|&p| run.references.len() * runs_of(p)).sum();
-    let policies = options.policies.iter().map(|&policy| run.policy(policy)).collect::<Result<_, _>>()?;
-    Ok(Comparison { budget_us, references: run.references, policies })
+    let frames = options.policies.iter().map(|&p| references.len() * runs_of(p)).sum();
+    let done = AtomicUsize::new(0);
+    let runs =
+        Runs { trial: &trial, references: &references, budget_us, options, done: &done, frames, progress };
+    let policies = runs.all()?;
+    Ok(Comparison { budget_us, references, policies })
 }
 
 /// The median over frames of coarsest + 0.4 · (finest − coarsest); a microsecond where nothing is ever in view.
@@ -204,14 +218,15 @@ fn default_budget_us(references: &[Reference]) -> f64 {
 }
 
 /// Trials of one comparison.
-struct Runs<'a, 'p> {
-    trial: Trial<'a>,
-    references: Vec<Reference>,
+struct Runs<'a> {
+    trial: &'a Trial<'a>,
+    references: &'a [Reference],
     budget_us: f64,
-    fps: f64,
-    done: usize,
-    total: usize,
-    progress: &'p mut dyn FnMut(Progress),
+    options: &'a CompareOptions,
+    /// Frames done and frames in all.
+    done: &'a AtomicUsize,
+    frames: usize,
+    progress: &'a (dyn Fn(Progress) + Sync),
 }
 
 /// Multipliers that hindsight tries first, as powers of two: from −`COARSE` to `COARSE`.
@@ -227,44 +242,100 @@ fn runs_of(policy: Policy) -> usize {
     }
 }
 
-impl Runs<'_, '_> {
-    fn policy(&mut self, policy: Policy) -> Result<PolicyResult, OptionsError> {
-        let scale = match policy {
-            Policy::Static => Some(self.scale_in_hindsight()?),
-            _ => None,
+impl Runs<'_> {
+    fn all(&self) -> Result<Vec<PolicyResult>, OptionsError> {
+        let policies = &self.options.policies;
+        let scale = match policies.contains(&Policy::Static) {
+            true => Some(self.scale_in_hindsight()?),
+            false => None,
         };
-        let rows = self.rows(policy, scale.unwrap_or(1.0), Bounds::Certify)?;
-        Ok(PolicyResult { policy, scale, metrics: Metrics::of(&rows, self.budget_us, self.fps), rows })
+        let scale_of = |policy| scale.filter(|_| policy == Policy::Static);
+        let run = |&policy: &Policy| self.policy(policy, scale_of(policy));
+        in_parallel(policies, self.options.threads, run).into_iter().collect()
     }
 
-    fn rows(&mut self, policy: Policy, scale: f32, bounds: Bounds) -> Result<Vec<FrameRow>, OptionsError> {
-        let Self { trial, references, budget_us, done, total, progress, .. } = self;
+    fn policy(&self, policy: Policy, scale: Option<f32>) -> Result<PolicyResult, OptionsError> {
+        let rows = self.rows(policy, scale.unwrap_or(1.0), Bounds::Certify)?;
+        Ok(PolicyResult { policy, scale, metrics: self.metrics(&rows), rows })
+    }
+
+    fn metrics(&self, rows: &[FrameRow]) -> Metrics {
+        Metrics::of(rows, self.budget_us, self.options.camera.fps)
+    }
+
+    fn rows(&self, policy: Policy, scale: f32, bounds: Bounds) -> Result<Vec<FrameRow>, OptionsError> {
         let mut tick = || {
-            *done += 1;
-            progress(Progress { policy, done: *done, total: *total });
+            let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+            (self.progress)(Progress { policy, done, total: self.frames });
         };
-        trial.run(policy.selector(scale)?, *budget_us, bounds, references, &mut tick)
+        self.trial.run(policy.selector(scale)?, self.budget_us, bounds, self.references, &mut tick)
     }
 
     /// The multiplier of the smallest tracking: powers of two first, then ever closer around the best.
-    fn scale_in_hindsight(&mut self) -> Result<f32, OptionsError> {
-        let mut best = (f64::INFINITY, 0.0);
-        for exponent in -COARSE..=COARSE {
-            best = self.better(best, f64::from(exponent))?;
-        }
+    fn scale_in_hindsight(&self) -> Result<f32, OptionsError> {
+        let powers: Vec<f64> = (-COARSE..=COARSE).map(f64::from).collect();
+        let mut best = self.best_of(Tracked { tracking: f64::INFINITY, exponent: 0.0 }, &powers)?;
         let mut step = 0.5;
         for _ in 0..HALVINGS {
-            let center = best.1;
-            best = self.better(best, center - step)?;
-            best = self.better(best, center + step)?;
+            best = self.best_of(best, &[best.exponent - step, best.exponent + step])?;
             step /= 2.0;
         }
-        Ok(best.1.exp2() as f32)
+        Ok(best.exponent.exp2() as f32)
     }
 
-    fn better(&mut self, best: (f64, f64), exponent: f64) -> Result<(f64, f64), OptionsError> {
+    /// The best of `best` and these powers of two; the earlier one of equals.
+    fn best_of(&self, best: Tracked, exponents: &[f64]) -> Result<Tracked, OptionsError> {
+        let tracked = in_parallel(exponents, self.options.threads, |&exponent| self.tracked(exponent));
+        tracked.into_iter().try_fold(best, |best, next| {
+            let next = next?;
+            Ok(if next.tracking < best.tracking { next } else { best })
+        })
+    }
+
+    fn tracked(&self, exponent: f64) -> Result<Tracked, OptionsError> {
         let rows = self.rows(Policy::Static, exponent.exp2() as f32, Bounds::Skip)?;
-        let tracking = Metrics::of(&rows, self.budget_us, self.fps).tracking_over_budget;
-        Ok(if tracking < best.0 { (tracking, exponent) } else { best })
+        Ok(Tracked { tracking: self.metrics(&rows).tracking_over_budget, exponent })
+    }
+}
+
+/// How well a size multiplier of 2^`exponent` tracks the budget.
+#[derive(Clone, Copy, Debug)]
+struct Tracked {
+    tracking: f64,
+    exponent: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::generate::scatter;
+    use glam::{DVec3, Quat};
+
+    #[test]
+    fn the_number_of_threads_changes_nothing() {
+        let scene = scatter(200, 3);
+        let pose = |i: u32| crate::files::Pose {
+            time_s: f64::from(i) / 20.0,
+            position: DVec3::new(0.0, 2.0, 20.0 - f64::from(i)),
+            rotation: Quat::IDENTITY,
+        };
+        let path = CameraPath::new("walk", (0..8).map(pose).collect()).expect("a good path");
+        let machine = Machine::default_for(&scene.tables, &RuntimeOptions::default().cost, 1);
+        let run = |threads| {
+            let options = CompareOptions { threads, ..CompareOptions::default() };
+            let told = AtomicUsize::new(0);
+            let comparison = compare(&scene, &path, &machine, &options, &|p| {
+                told.fetch_max(p.done, Ordering::Relaxed);
+                assert!(p.done <= p.total);
+            });
+            (comparison.expect("it runs"), told.into_inner())
+        };
+        let ((one, told), (three, told_three)) = (run(1), run(3));
+        assert_eq!(one.references.len(), 22);
+        assert_eq!((told, told_three), (22 * (6 + 26), 22 * (6 + 26)));
+        for (a, b) in one.policies.iter().zip(&three.policies) {
+            assert_eq!((a.policy, a.scale, a.metrics), (b.policy, b.scale, b.metrics));
+            assert_eq!(a.rows, b.rows);
+        }
     }
 }

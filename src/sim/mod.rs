@@ -8,6 +8,7 @@ pub mod generate;
 mod compare;
 mod machine;
 mod metrics;
+mod threads;
 mod trial;
 
 pub use compare::{CompareOptions, Comparison, Policy, PolicyResult, Progress, compare};

@@ -35,7 +35,26 @@ impl Default for Camera {
     }
 }
 
+/// A path may have so many frames.
+const MOST_FRAMES: usize = 1_000_000;
+
 impl Camera {
+    /// Whether the camera can be used, and the path has no more than a million frames in it: a time stamp that went
+    /// wrong is no reason to run for a year.
+    ///
+    /// # Errors
+    /// Names the option and the rule it breaks.
+    pub fn check(&self, path: &CameraPath) -> Result<(), OptionsError> {
+        let fps = self.fps.is_finite() && self.fps > 0.0;
+        OptionsError::unless(fps, "fps", "must be finite and positive")?;
+        let fov = self.fov_deg > 0.0 && self.fov_deg < 180.0;
+        OptionsError::unless(fov, "fov", "must be above 0 and below 180 degrees")?;
+        let view = self.view(&path.poses()[0]);
+        view.check().map_err(|e| OptionsError { option: "camera", rule: e.rule })?;
+        let short = self.frames(path) <= MOST_FRAMES;
+        OptionsError::unless(short, "fps", "must be so low that the path has at most 1000000 frames")
+    }
+
     /// The view from a pose.
     pub fn view(&self, pose: &Pose) -> View {
         let base = View::perspective(self.fov_deg.to_radians(), self.viewport_px);
@@ -44,7 +63,7 @@ impl Camera {
 
     /// How many frames a path has: one at its start, the last not after its end.
     pub fn frames(&self, path: &CameraPath) -> usize {
-        (path.duration_s() * self.fps + 1e-6).floor() as usize + 1
+        ((path.duration_s() * self.fps + 1e-6).floor() as usize).saturating_add(1)
     }
 
     fn views(self, path: &CameraPath) -> impl Iterator<Item = View> + '_ {

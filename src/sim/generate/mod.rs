@@ -70,7 +70,7 @@ use std::fmt;
 
 use crate::files::{CameraPath, Scene};
 
-pub use scatter::scatter;
+pub use scatter::{scatter, scatter_path};
 
 /// A scene that can be made from a seed. The same seed gives the same scene and the same path on every platform: to
 /// the last bit, but for rotations, whose normalisation may differ in it.

@@ -4,9 +4,10 @@ use glam::DVec3;
 
 use super::dice::Dice;
 use super::draft::{Draft, Stock};
+use super::film::{Film, key};
 use super::kind::Kind;
 use super::shape::Shape;
-use crate::files::Scene;
+use crate::files::{CameraPath, Scene};
 
 const TABLES: usize = 36;
 /// Ground per object, in square metres: the density stays when the number of objects grows.
@@ -31,6 +32,21 @@ pub fn scatter(objects: usize, seed: u64) -> Scene {
         draft.put_scaled(dice.pick(&stocks), at, scale).importance = dice.pick(&IMPORTANCES);
     }
     draft.finish()
+}
+
+/// A flight of half a minute through a scatter of so many objects, however large it is: at rest on its edge for five
+/// seconds, rising over its middle, and looking back from the other edge.
+pub fn scatter_path(objects: usize, seed: u64) -> CameraPath {
+    let reach = (objects as f64 * GROUND).sqrt() / 2.0;
+    let street = (BLOCK + PITCH) / 2.0 - reach;
+    let shot = [
+        key(0.0, [street, 1.7, reach], 0.0, 0.0),
+        key(5.0, [street, 1.7, reach], 0.0, 0.0),
+        key(15.0, [0.0, 12.0, 0.0], 20.0, -10.0),
+        key(25.0, [0.0, 25.0, -reach], 0.0, 0.0),
+        key(30.0, [0.0, 25.0, -reach], 180.0, -10.0),
+    ];
+    Film { name: "scatter", hz: 20, sway_deg: 0.5, shots: &[&shot] }.shoot(seed)
 }
 
 const IMPORTANCES: [f32; 8] = [0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0];

@@ -1,0 +1,130 @@
+//! `lod inspect`: what is in a file, and what is odd about it.
+
+use std::fmt::Write as _;
+use std::io::Write;
+use std::path::PathBuf;
+
+use lod_budget::files::inspect::{InstanceInspection, PathInspection, SceneInspection, Total};
+use lod_budget::files::{Break, BreakKind, Inspection, inspect};
+use serde::Serialize;
+
+use crate::text::{count, counted, plain};
+
+/// Say what is in a scene, a camera path or a knapsack instance, and what is odd about it.
+///
+/// Scenes are .json, .glb and .gltf files, paths .csv, .tum and .txt, instances .json.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// The file
+    file: PathBuf,
+    /// Print one JSON object and nothing else
+    #[arg(long)]
+    json: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  lod inspect town.glb
+  lod inspect drive.csv --json";
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Inspected<'a> {
+    file: String,
+    #[serde(flatten)]
+    inspection: &'a Inspection,
+}
+
+pub fn run(args: &Args, out: &mut dyn Write) -> anyhow::Result<()> {
+    let inspection = &inspect(&args.file)?;
+    if args.json {
+        let inspected = Inspected { file: args.file.display().to_string(), inspection };
+        writeln!(out, "{}", serde_json::to_string_pretty(&inspected)?)?;
+        return Ok(());
+    }
+    let words = match inspection {
+        Inspection::Scene(scene) => scene_in_words(scene),
+        Inspection::Path(path) => path_in_words(path),
+        Inspection::Instance(instance) => instance_in_words(instance),
+    };
+    write!(out, "{words}")?;
+    Ok(())
+}
+
+/// Lines of a name and what there is to say.
+#[derive(Default)]
+struct Lines(String);
+
+impl Lines {
+    fn say(&mut self, name: &str, words: impl std::fmt::Display) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(self.0, "{name:<10}{words}");
+    }
+}
+
+fn scene_in_words(s: &SceneInspection) -> String {
+    let mut lines = Lines::default();
+    lines.say("Scene", plain(&s.name));
+    let choice = counted(s.objects_with_levels, "object");
+    lines.say("Objects", format!("{}; {choice} with levels to choose from", count(s.objects as u64)));
+    lines.say("Tables", format!("{}, {} of them unused", count(s.tables as u64), s.unused_tables));
+    for c in &s.level_counts {
+        let (levels, tables) = (counted(c.levels, "level"), counted(c.tables, "table"));
+        lines.say("", format!("{levels}: {tables}, {}", counted(c.objects, "object")));
+    }
+    lines.say("Finest", total_in_words(&s.finest));
+    lines.say("Coarsest", total_in_words(&s.coarsest));
+    match (s.min, s.max) {
+        (Some(min), Some(max)) => lines.say("Box", format!("{} to {}", point(min), point(max))),
+        _ => lines.say("Box", "empty"),
+    }
+    for setting in &s.settings {
+        lines.say("Setting", format!("{}: {}", setting.setting, counted(setting.objects, "object")));
+    }
+    if s.unseen > 0 {
+        lines.say("Unseen", format!("{} that no camera can see", counted(s.unseen, "object")));
+    }
+    for lint in &s.lints {
+        lines.say("Odd", format!("table '{}', level {}: {}", plain(&lint.table), lint.level, lint.rule));
+    }
+    lines.0
+}
+
+fn total_in_words(t: &Total) -> String {
+    let [triangles, vertices, draws, bytes] = [t.triangles, t.vertices, t.draws, t.bytes].map(count);
+    format!("{triangles} triangles, {vertices} vertices, {draws} draws, {bytes} bytes")
+}
+
+fn point([x, y, z]: [f32; 3]) -> String {
+    format!("({x}, {y}, {z})")
+}
+
+fn path_in_words(p: &PathInspection) -> String {
+    let mut lines = Lines::default();
+    lines.say("Path", plain(&p.name));
+    lines.say("Poses", format!("{}, {:.1} a second", count(p.poses as u64), p.rate_hz));
+    lines.say("Time", format!("{:.3} s from {} s on", p.duration_s, p.start_s));
+    lines.say("Length", format!("{:.2} units, at most {:.2} a second", p.length, p.top_speed));
+    if p.dropped > 0 {
+        lines
+            .say("Dropped", format!("{} that repeat the time of the one before", counted(p.dropped, "pose")));
+    }
+    for found in &p.breaks {
+        lines.say(if found.kind == BreakKind::Gap { "Gap" } else { "Jump" }, break_in_words(found));
+    }
+    lines.0
+}
+
+fn break_in_words(b: &Break) -> String {
+    format!(
+        "before pose {}, at {:.3} s: {:.3} s and {:.2} units wide",
+        b.pose, b.time_s, b.duration_s, b.distance
+    )
+}
+
+fn instance_in_words(i: &InstanceInspection) -> String {
+    let mut lines = Lines::default();
+    lines.say("Instance", format!("{} classes, {}", count(i.classes as u64), counted(i.items, "item")));
+    lines.0
+}
