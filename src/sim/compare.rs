@@ -229,15 +229,15 @@ struct Runs<'a> {
     progress: &'a (dyn Fn(Progress) + Sync),
 }
 
-/// Multipliers that hindsight tries first, as powers of two: from −`COARSE` to `COARSE`.
-const COARSE: i32 = 7;
+/// Multipliers that hindsight tries first, as powers of two.
+const COARSE: [f64; 12] = [-14.0, -12.0, -10.0, -8.0, -6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0, 8.0];
 /// How often it then halves the distance to the neighbours of the best.
-const HALVINGS: usize = 5;
+const HALVINGS: usize = 6;
 
 /// How many trials a policy takes.
 fn runs_of(policy: Policy) -> usize {
     match policy {
-        Policy::Static => 2 * COARSE as usize + 1 + 2 * HALVINGS + 1,
+        Policy::Static => COARSE.len() + 2 * HALVINGS + 1,
         _ => 1,
     }
 }
@@ -271,11 +271,10 @@ impl Runs<'_> {
         self.trial.run(policy.selector(scale)?, self.budget_us, bounds, self.references, &mut tick)
     }
 
-    /// The multiplier of the smallest tracking: powers of two first, then ever closer around the best.
+    /// The multiplier of the smallest tracking: powers of four first, then ever closer around the best.
     fn scale_in_hindsight(&self) -> Result<f32, OptionsError> {
-        let powers: Vec<f64> = (-COARSE..=COARSE).map(f64::from).collect();
-        let mut best = self.best_of(Tracked { tracking: f64::INFINITY, exponent: 0.0 }, &powers)?;
-        let mut step = 0.5;
+        let mut best = self.best_of(Tracked { tracking: f64::INFINITY, exponent: 0.0 }, &COARSE)?;
+        let mut step = 1.0;
         for _ in 0..HALVINGS {
             best = self.best_of(best, &[best.exponent - step, best.exponent + step])?;
             step /= 2.0;
