@@ -12,10 +12,7 @@ struct Exhaustive {
 fn exhaustive(instance: &Instance, units: f64) -> Exhaustive {
     let whole = |value: f64| {
         let scaled = value * units;
-        assert!(
-            scaled.fract() == 0.0 && scaled < 1e30,
-            "{value} is not on the test's grid"
-        );
+        assert!(scaled.fract() == 0.0 && scaled < 1e30, "{value} is not on the test's grid");
         scaled as i128
     };
     let mut sums = vec![(0i128, 0i128)];
@@ -23,19 +20,13 @@ fn exhaustive(instance: &Instance, units: f64) -> Exhaustive {
         sums = sums
             .iter()
             .flat_map(|&(cost, benefit)| {
-                class
-                    .iter()
-                    .map(move |i| (cost + whole(i.cost), benefit + whole(i.benefit)))
+                class.iter().map(move |i| (cost + whole(i.cost), benefit + whole(i.benefit)))
             })
             .collect();
     }
     let budget = whole(instance.budget());
     Exhaustive {
-        benefit: sums
-            .iter()
-            .filter(|sum| sum.0 <= budget)
-            .map(|sum| sum.1)
-            .max(),
+        benefit: sums.iter().filter(|sum| sum.0 <= budget).map(|sum| sum.1).max(),
         least_cost: sums.iter().map(|sum| sum.0).min().unwrap_or(0),
     }
 }
@@ -47,40 +38,24 @@ fn check(
     truth: &Exhaustive,
     units: f64,
 ) -> Result<(), TestCaseError> {
-    let chosen: Vec<Item> = instance
-        .classes()
-        .zip(&solution.choice)
-        .map(|(class, &i)| class[i as usize])
-        .collect();
+    let chosen: Vec<Item> =
+        instance.classes().zip(&solution.choice).map(|(class, &i)| class[i as usize]).collect();
     prop_assert_eq!(chosen.len(), instance.len());
-    let exact_sum = |amount: fn(&Item) -> f64| {
-        chosen
-            .iter()
-            .map(|item| (amount(item) * units) as i128)
-            .sum::<i128>()
-    };
+    let exact_sum =
+        |amount: fn(&Item) -> f64| chosen.iter().map(|item| (amount(item) * units) as i128).sum::<i128>();
     let (cost, benefit) = (exact_sum(|item| item.cost), exact_sum(|item| item.benefit));
     prop_assert_eq!(solution.cost, cost as f64 / units);
     prop_assert_eq!(solution.benefit, benefit as f64 / units);
     prop_assert_eq!(solution.feasible, truth.benefit.is_some());
     let Some(best) = truth.benefit else {
         prop_assert_eq!(cost, truth.least_cost);
-        prop_assert_eq!(
-            (solution.upper_bound, solution.gap, solution.optimal),
-            (None, None, false)
-        );
-        prop_assert_eq!(
-            solution.shortfall,
-            (cost - (instance.budget() * units) as i128) as f64 / units
-        );
+        prop_assert_eq!((solution.upper_bound, solution.gap, solution.optimal), (None, None, false));
+        prop_assert_eq!(solution.shortfall, (cost - (instance.budget() * units) as i128) as f64 / units);
         return Ok(());
     };
     prop_assert!(cost as f64 <= instance.budget() * units);
     prop_assert!(benefit <= best && best <= 2 * benefit);
-    let (bound, gap) = (
-        solution.upper_bound.unwrap_or(-1.0),
-        solution.gap.unwrap_or(-1.0),
-    );
+    let (bound, gap) = (solution.upper_bound.unwrap_or(-1.0), solution.gap.unwrap_or(-1.0));
     prop_assert!(bound * units >= best as f64);
     prop_assert!((0.0..1.0).contains(&gap));
     prop_assert_eq!(solution.optimal, gap == 0.0);
@@ -95,22 +70,14 @@ fn check_both(instance: &Instance, units: f64) -> Result<(), TestCaseError> {
     let proved = exact(instance, &mut || false);
     check(instance, &proved, &truth, units)?;
     prop_assert!(proved.optimal || !proved.feasible);
-    prop_assert_eq!(
-        proved.benefit,
-        truth
-            .benefit
-            .map_or(proved.benefit, |best| best as f64 / units)
-    );
+    prop_assert_eq!(proved.benefit, truth.benefit.map_or(proved.benefit, |best| best as f64 / units));
     Ok(())
 }
 
 /// Small integers: zeros, duplicates, equal slopes, dominated and non-concave items all come up often.
 fn small_class() -> impl Strategy<Value = Vec<Item>> {
     prop::collection::vec(
-        (0u32..12, 0u32..12).prop_map(|(cost, benefit)| Item {
-            cost: cost.into(),
-            benefit: benefit.into(),
-        }),
+        (0u32..12, 0u32..12).prop_map(|(cost, benefit)| Item { cost: cost.into(), benefit: benefit.into() }),
         1..6,
     )
 }
@@ -128,15 +95,7 @@ fn wide_class() -> impl Strategy<Value = Vec<Item>> {
 }
 
 fn cheapest_cost(classes: &[Vec<Item>]) -> f64 {
-    classes
-        .iter()
-        .map(|class| {
-            class
-                .iter()
-                .map(|item| item.cost)
-                .fold(f64::INFINITY, f64::min)
-        })
-        .sum()
+    classes.iter().map(|class| class.iter().map(|item| item.cost).fold(f64::INFINITY, f64::min)).sum()
 }
 
 fn build(budget: f64, classes: &[Vec<Item>]) -> Instance {

@@ -41,17 +41,31 @@ fn solve<T: Number>(ledger: &Ledger<'_, T>) -> Solution {
     let mut forced = start;
     forced.switch(critical.step.class, critical.step.to);
     forced.walk(&steps);
-    let better = if forced.totals.benefit > filled.totals.benefit {
-        forced
-    } else {
-        filled
-    };
-    ledger.solution(
-        better.choice,
-        better.totals,
-        critical.linear_bound(ledger),
-        critical.slope(ledger),
-    )
+    let better = if forced.totals.benefit > filled.totals.benefit { forced } else { filled };
+    ledger.solution(better.choice, better.totals, critical.linear_bound(ledger), critical.slope(ledger))
+}
+
+/// The integer part of the linear relaxation's optimum: every step steeper than the critical one taken.
+#[derive(Clone, Debug)]
+pub(crate) struct Relaxation {
+    pub choice: Vec<u32>,
+    /// The slope of the step that the budget cuts; 0 when none is cut.
+    pub lambda: f64,
+}
+
+/// Solves the linear relaxation; `None` when nothing is feasible.
+pub(crate) fn relax<T: Number>(ledger: &Ledger<'_, T>) -> Option<Relaxation> {
+    let mut attempt = Attempt::new(ledger, cheapest(ledger.instance));
+    if attempt.totals.cost > ledger.budget {
+        return None;
+    }
+    for step in sorted_steps(ledger, &attempt) {
+        if attempt.with(step.class, step.to).cost > ledger.budget {
+            return Some(Relaxation { choice: attempt.choice, lambda: step.geometry(ledger).slope() });
+        }
+        attempt.switch(step.class, step.to);
+    }
+    Some(Relaxation { choice: attempt.choice, lambda: 0.0 })
 }
 
 /// A step from one item of a class's hull to the next.
@@ -65,10 +79,7 @@ pub(crate) struct HullStep {
 impl HullStep {
     pub fn geometry<T: Number>(&self, ledger: &Ledger<'_, T>) -> Step {
         let class = self.class as usize;
-        Step {
-            from: ledger.item(class, self.from),
-            to: ledger.item(class, self.to),
-        }
+        Step { from: ledger.item(class, self.from), to: ledger.item(class, self.to) }
     }
 }
 
@@ -78,11 +89,7 @@ fn sorted_steps<T: Number>(ledger: &Ledger<'_, T>, start: &Attempt<'_, T>) -> Ve
     let mut hull = Vec::new();
     for (class, items) in ledger.instance.classes().enumerate() {
         let others = start.totals.cost - ledger.cost(items[start.choice[class] as usize]);
-        upper_hull_of(
-            items,
-            |&item| others + ledger.cost(item) <= ledger.budget,
-            &mut hull,
-        );
+        upper_hull_of(items, |&item| others + ledger.cost(item) <= ledger.budget, &mut hull);
         steps.extend(hull.windows(2).map(|ends| HullStep {
             class: class as u32,
             from: ends[0],
@@ -90,9 +97,7 @@ fn sorted_steps<T: Number>(ledger: &Ledger<'_, T>, start: &Attempt<'_, T>) -> Ve
         }));
     }
     // Steps of one class are in order already, and the sort is stable.
-    steps.sort_by(|a, b| {
-        steeper_first(a.geometry(ledger), b.geometry(ledger)).then(a.class.cmp(&b.class))
-    });
+    steps.sort_by(|a, b| steeper_first(a.geometry(ledger), b.geometry(ledger)).then(a.class.cmp(&b.class)));
     steps
 }
 
@@ -111,18 +116,12 @@ struct Attempt<'a, T> {
 impl<'a, T: Number> Attempt<'a, T> {
     fn new(ledger: &'a Ledger<'a, T>, choice: Vec<u32>) -> Self {
         let totals = ledger.totals(&choice);
-        Self {
-            ledger,
-            choice,
-            totals,
-        }
+        Self { ledger, choice, totals }
     }
 
     /// Totals once `class` has chosen `item`.
     fn with(&self, class: u32, item: u32) -> Totals<T> {
-        let old = self
-            .ledger
-            .item(class as usize, self.choice[class as usize]);
+        let old = self.ledger.item(class as usize, self.choice[class as usize]);
         let new = self.ledger.item(class as usize, item);
         Totals {
             cost: self.totals.cost - self.ledger.cost(old) + self.ledger.cost(new),
@@ -147,10 +146,7 @@ impl<'a, T: Number> Attempt<'a, T> {
             if self.with(step.class, step.to).cost <= self.ledger.budget {
                 self.switch(step.class, step.to);
             } else if critical.is_none() {
-                critical = Some(Critical {
-                    step,
-                    before: self.totals,
-                });
+                critical = Some(Critical { step, before: self.totals });
             }
         }
         critical
@@ -179,9 +175,7 @@ impl<T: Number> Critical<T> {
         }
         let run = ledger.cost(to) - ledger.cost(from);
         let rise = ledger.benefit(to) - ledger.benefit(from);
-        let part = (room.to_f64_up(ledger.cost_unit) / run.to_f64_down(ledger.cost_unit))
-            .next_up()
-            .min(1.0);
+        let part = (room.to_f64_up(ledger.cost_unit) / run.to_f64_down(ledger.cost_unit)).next_up().min(1.0);
         let gain = (part * rise.to_f64_up(ledger.benefit_unit)).next_up();
         Some((self.before.benefit.to_f64_up(ledger.benefit_unit) + gain).next_up())
     }
@@ -193,9 +187,7 @@ mod tests {
     use super::*;
 
     fn instance(budget: f64, classes: &[&[(f64, f64)]]) -> Instance {
-        let classes = classes
-            .iter()
-            .map(|class| class.iter().copied().map(Item::from).collect::<Vec<_>>());
+        let classes = classes.iter().map(|class| class.iter().copied().map(Item::from).collect::<Vec<_>>());
         Instance::new(budget, classes).expect("a valid instance")
     }
 
@@ -204,18 +196,8 @@ mod tests {
         let solution = greedy(&instance(
             346.8607,
             &[
-                &[
-                    (0.1136, 0.4652),
-                    (1.7599, 5.0387),
-                    (18.8952, 34.5056),
-                    (346.7490, 618.5195),
-                ],
-                &[
-                    (0.1086, 0.3795),
-                    (0.3057, 0.6621),
-                    (5.2287, 2.1120),
-                    (21.4700, 6.1775),
-                ],
+                &[(0.1136, 0.4652), (1.7599, 5.0387), (18.8952, 34.5056), (346.7490, 618.5195)],
+                &[(0.1086, 0.3795), (0.3057, 0.6621), (5.2287, 2.1120), (21.4700, 6.1775)],
             ],
         ));
         assert_eq!(solution.choice, [3, 0]);
@@ -224,10 +206,7 @@ mod tests {
 
     #[test]
     fn a_large_item_behind_a_steep_small_one_is_found_by_the_second_attempt() {
-        let solution = greedy(&instance(
-            10.0,
-            &[&[(0.0, 0.0), (1.0, 2.0)], &[(0.0, 0.0), (10.0, 10.0)]],
-        ));
+        let solution = greedy(&instance(10.0, &[&[(0.0, 0.0), (1.0, 2.0)], &[(0.0, 0.0), (10.0, 10.0)]]));
         assert_eq!((solution.choice, solution.benefit), (vec![0, 1], 10.0));
         assert_eq!(solution.lambda, 1.0);
         assert_eq!(solution.upper_bound.map(f64::floor), Some(11.0));
@@ -237,11 +216,7 @@ mod tests {
     fn fill_goes_on_behind_a_step_that_does_not_fit() {
         let solution = greedy(&instance(
             3.0,
-            &[
-                &[(0.0, 0.0), (2.0, 20.0)],
-                &[(0.0, 0.0), (2.0, 4.0)],
-                &[(0.0, 0.0), (1.0, 1.0)],
-            ],
+            &[&[(0.0, 0.0), (2.0, 20.0)], &[(0.0, 0.0), (2.0, 4.0)], &[(0.0, 0.0), (1.0, 1.0)]],
         ));
         assert_eq!(solution.choice, [1, 0, 1]);
         assert!(!solution.optimal && solution.feasible);
@@ -249,31 +224,16 @@ mod tests {
 
     #[test]
     fn infeasible_is_an_answer() {
-        let solution = greedy(&instance(
-            1.5,
-            &[&[(5.0, 9.0), (1.0, 1.0)], &[(1.0, 2.0), (1.0, 3.0)]],
-        ));
-        assert_eq!(
-            (solution.choice, solution.cost, solution.benefit),
-            (vec![1, 1], 2.0, 4.0)
-        );
-        assert_eq!(
-            (solution.feasible, solution.optimal, solution.shortfall),
-            (false, false, 0.5)
-        );
-        assert_eq!(
-            (solution.upper_bound, solution.gap, solution.lambda),
-            (None, None, f64::INFINITY)
-        );
+        let solution = greedy(&instance(1.5, &[&[(5.0, 9.0), (1.0, 1.0)], &[(1.0, 2.0), (1.0, 3.0)]]));
+        assert_eq!((solution.choice, solution.cost, solution.benefit), (vec![1, 1], 2.0, 4.0));
+        assert_eq!((solution.feasible, solution.optimal, solution.shortfall), (false, false, 0.5));
+        assert_eq!((solution.upper_bound, solution.gap, solution.lambda), (None, None, f64::INFINITY));
     }
 
     #[test]
     fn a_shortfall_below_every_cost_is_seen() {
         let solution = greedy(&instance(1.0f64.next_down(), &[&[(1.0, 1.0)]]));
-        assert_eq!(
-            (solution.feasible, solution.shortfall),
-            (false, f64::EPSILON / 2.0)
-        );
+        assert_eq!((solution.feasible, solution.shortfall), (false, f64::EPSILON / 2.0));
         let sum = [0.1, 0.2, 0.3].map(|cost| [Item { cost, benefit: 1.0 }]);
         assert!(
             !greedy(&Instance::new(0.6, sum).expect("valid")).feasible,
@@ -289,10 +249,7 @@ mod tests {
             (0, 0.0, Some(0.0), Some(0.0))
         );
         let free = greedy(&instance(0.0, &[&[(0.0, 3.0), (0.0, 4.0), (1.0, 9.0)]]));
-        assert_eq!(
-            (free.choice, free.optimal, free.feasible),
-            (vec![1], true, true)
-        );
+        assert_eq!((free.choice, free.optimal, free.feasible), (vec![1], true, true));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::Item;
-use super::dyadic::{LOWEST_UNIT, Number, Wide, decompose};
+use super::dyadic::{Number, WideProduct, add_product, decompose};
 
 /// Writes into `hull` the indices of the upper convex hull of `items`, in order of cost, from the cheapest item (of equally cheap
 /// ones the highest benefit, then the lowest index) to the one with the highest benefit.
@@ -37,25 +37,13 @@ pub fn upper_hull_of(items: &[Item], keep: impl Fn(&Item) -> bool, hull: &mut Ve
 
 fn cheaper_then_better(items: &[Item], a: u32, b: u32) -> Ordering {
     let (left, right) = (items[a as usize], items[b as usize]);
-    left.cost
-        .total_cmp(&right.cost)
-        .then(right.benefit.total_cmp(&left.benefit))
-        .then(a.cmp(&b))
+    left.cost.total_cmp(&right.cost).then(right.benefit.total_cmp(&left.benefit)).then(a.cmp(&b))
 }
 
 /// Whether `middle` lies strictly below the edge from `left` to `right`.
 fn lies_below(items: &[Item], left: u32, middle: u32, right: Item) -> bool {
     let (left, middle) = (items[left as usize], items[middle as usize]);
-    compare_slopes(
-        Step {
-            from: left,
-            to: middle,
-        },
-        Step {
-            from: middle,
-            to: right,
-        },
-    ) == Ordering::Less
+    compare_slopes(Step { from: left, to: middle }, Step { from: middle, to: right }) == Ordering::Less
 }
 
 /// A step from an item of a class to a costlier and better one.
@@ -88,10 +76,7 @@ pub fn compare_slopes(a: Step, b: Step) -> Ordering {
     if in_range(left) && in_range(right) && (left - right).abs() > doubt {
         return left.total_cmp(&right);
     }
-    if [rise_a, run_a, rise_b, run_b]
-        .iter()
-        .all(|difference| difference.low == 0.0)
-    {
+    if [rise_a, run_a, rise_b, run_b].iter().all(|difference| difference.low == 0.0) {
         return compare_products(rise_a.high, run_b.high, rise_b.high, run_a.high);
     }
     compare_in_full(rise_a, run_b, rise_b, run_a)
@@ -99,27 +84,21 @@ pub fn compare_slopes(a: Step, b: Step) -> Ordering {
 
 /// An exact difference of two `f64`, as the unevaluated sum of its rounded value and the rounding error.
 #[derive(Clone, Copy)]
-struct Difference {
-    high: f64,
-    low: f64,
+pub(crate) struct Difference {
+    pub high: f64,
+    pub low: f64,
 }
 
 fn differences(step: Step) -> [Difference; 2] {
-    [
-        difference(step.to.benefit, step.from.benefit),
-        difference(step.to.cost, step.from.cost),
-    ]
+    [difference(step.to.benefit, step.from.benefit), difference(step.to.cost, step.from.cost)]
 }
 
 /// Knuth's two-sum, with a minus (D. E. Knuth, The Art of Computer Programming 2, 4.2.2). Exact for non-negative finite values.
-fn difference(a: f64, b: f64) -> Difference {
+pub(crate) fn difference(a: f64, b: f64) -> Difference {
     let high = a - b;
     let b_virtual = a - high;
     let a_virtual = high + b_virtual;
-    Difference {
-        high,
-        low: (a - a_virtual) + (b_virtual - b),
-    }
+    Difference { high, low: (a - a_virtual) + (b_virtual - b) }
 }
 
 /// Compares `a·b` with `c·d`; all are finite and not negative.
@@ -134,47 +113,19 @@ fn compare_products(a: f64, b: f64, c: f64, d: f64) -> Ordering {
     }
     let top = |mantissa: u128, exponent: i32| exponent + 128 - mantissa.leading_zeros() as i32;
     // With the highest bits level, aligning them to the top of the word loses nothing.
-    top(m, e)
-        .cmp(&top(n, f))
-        .then((m << m.leading_zeros()).cmp(&(n << n.leading_zeros())))
+    top(m, e).cmp(&top(n, f)).then((m << m.leading_zeros()).cmp(&(n << n.leading_zeros())))
 }
-
-/// Products of differences span 2^-2148 … 2^2049: 4 200 bits and some carries.
-type WideProduct = Wide<68>;
 
 /// Compares `a·b` with `c·d` through the eight partial products.
 fn compare_in_full(a: Difference, b: Difference, c: Difference, d: Difference) -> Ordering {
     let mut sum = WideProduct::ZERO;
-    for (x, y) in [
-        (a.high, b.high),
-        (a.high, b.low),
-        (a.low, b.high),
-        (a.low, b.low),
-    ] {
+    for (x, y) in [(a.high, b.high), (a.high, b.low), (a.low, b.high), (a.low, b.low)] {
         sum = add_product(sum, x, y);
     }
-    for (x, y) in [
-        (c.high, d.high),
-        (c.high, d.low),
-        (c.low, d.high),
-        (c.low, d.low),
-    ] {
+    for (x, y) in [(c.high, d.high), (c.high, d.low), (c.low, d.high), (c.low, d.low)] {
         sum = add_product(sum, -x, y);
     }
     sum.sign()
-}
-
-fn add_product(sum: WideProduct, x: f64, y: f64) -> WideProduct {
-    let ((m, e), (n, f)) = (decompose(x.abs()), decompose(y.abs()));
-    let product = WideProduct::shifted(
-        u128::from(m) * u128::from(n),
-        (e + f - 2 * LOWEST_UNIT) as u32,
-    );
-    if (x < 0.0) == (y < 0.0) {
-        sum + product
-    } else {
-        sum - product
-    }
 }
 
 #[cfg(test)]
@@ -183,10 +134,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn items(points: &[(f64, f64)]) -> Vec<Item> {
-        points
-            .iter()
-            .map(|&(cost, benefit)| Item { cost, benefit })
-            .collect()
+        points.iter().map(|&(cost, benefit)| Item { cost, benefit }).collect()
     }
 
     fn hull_of(points: &[(f64, f64)]) -> Vec<u32> {
@@ -208,47 +156,23 @@ mod tests {
 
     #[test]
     fn items_on_an_edge_stay_and_items_below_go() {
-        assert_eq!(
-            hull_of(&[(2.0, 2.0), (0.0, 0.0), (1.0, 1.0), (3.0, 2.5)]),
-            [1, 2, 0, 3]
-        );
+        assert_eq!(hull_of(&[(2.0, 2.0), (0.0, 0.0), (1.0, 1.0), (3.0, 2.5)]), [1, 2, 0, 3]);
         assert_eq!(hull_of(&[(0.0, 0.0), (1.0, 0.5), (2.0, 2.0)]), [0, 2]);
     }
 
     #[test]
     fn slopes_that_round_alike_are_told_apart() {
         let step = |rise: f64, run: f64| Step {
-            from: Item {
-                cost: 0.0,
-                benefit: 0.0,
-            },
-            to: Item {
-                cost: run,
-                benefit: rise,
-            },
+            from: Item { cost: 0.0, benefit: 0.0 },
+            to: Item { cost: run, benefit: rise },
         };
         let big = (1u64 << 53) as f64;
         let (a, b) = (step(big - 1.0, big - 2.0), step(big - 2.0, big - 3.0));
         assert_eq!(compare_slopes(a, b), Ordering::Less);
         assert_eq!(compare_slopes(b, a), Ordering::Greater);
-        assert_eq!(
-            compare_slopes(step(3.0, 5.0), step(6.0, 10.0)),
-            Ordering::Equal
-        );
-        assert_eq!(
-            compare_slopes(step(5e-324, 5e-324), step(f64::MAX, f64::MAX)),
-            Ordering::Equal
-        );
-        let tiny = Step {
-            from: Item {
-                cost: 5e-324,
-                benefit: 0.0,
-            },
-            to: Item {
-                cost: 1.0,
-                benefit: 1.0,
-            },
-        };
+        assert_eq!(compare_slopes(step(3.0, 5.0), step(6.0, 10.0)), Ordering::Equal);
+        assert_eq!(compare_slopes(step(5e-324, 5e-324), step(f64::MAX, f64::MAX)), Ordering::Equal);
+        let tiny = Step { from: Item { cost: 5e-324, benefit: 0.0 }, to: Item { cost: 1.0, benefit: 1.0 } };
         assert_eq!(compare_slopes(tiny, step(1.0, 1.0)), Ordering::Greater);
     }
 

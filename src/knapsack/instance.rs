@@ -71,9 +71,7 @@ impl Instance {
 
     /// All classes in order.
     pub fn classes(&self) -> impl ExactSizeIterator<Item = &[Item]> + Clone {
-        self.offsets
-            .windows(2)
-            .map(|ends| &self.items[ends[0] as usize..ends[1] as usize])
+        self.offsets.windows(2).map(|ends| &self.items[ends[0] as usize..ends[1] as usize])
     }
 
     /// All items, class after class.
@@ -91,10 +89,7 @@ pub(crate) struct InstanceBuilder {
 
 impl Default for InstanceBuilder {
     fn default() -> Self {
-        Self {
-            offsets: vec![0],
-            items: Vec::new(),
-        }
+        Self { offsets: vec![0], items: Vec::new() }
     }
 }
 
@@ -116,18 +111,10 @@ impl InstanceBuilder {
     pub fn push(&mut self, item: Item) -> Result<(), InstanceError> {
         let (class, index) = (self.class(), self.item());
         if !is_amount(item.cost) {
-            return Err(InstanceError::Cost {
-                class,
-                item: index,
-                value: item.cost,
-            });
+            return Err(InstanceError::Cost { class, item: index, value: item.cost });
         }
         if !is_amount(item.benefit) {
-            return Err(InstanceError::Benefit {
-                class,
-                item: index,
-                value: item.benefit,
-            });
+            return Err(InstanceError::Benefit { class, item: index, value: item.benefit });
         }
         if self.items.len() == u32::MAX as usize {
             return Err(InstanceError::TooMany { class, item: index });
@@ -138,9 +125,7 @@ impl InstanceBuilder {
 
     pub fn close_class(&mut self) -> Result<(), InstanceError> {
         if self.item() == 0 {
-            return Err(InstanceError::EmptyClass {
-                class: self.class(),
-            });
+            return Err(InstanceError::EmptyClass { class: self.class() });
         }
         self.offsets.push(self.items.len() as u32);
         Ok(())
@@ -150,11 +135,7 @@ impl InstanceBuilder {
         if !is_amount(budget) {
             return Err(InstanceError::Budget { value: budget });
         }
-        let instance = Instance {
-            budget,
-            offsets: self.offsets,
-            items: self.items,
-        };
+        let instance = Instance { budget, offsets: self.offsets, items: self.items };
         for (total, of) in [
             (largest_total(&instance, |item| item.cost), "cost"),
             (largest_total(&instance, |item| item.benefit), "benefit"),
@@ -172,10 +153,7 @@ fn is_amount(value: f64) -> bool {
 }
 
 fn largest_total(instance: &Instance, amount: impl Fn(&Item) -> f64) -> f64 {
-    instance
-        .classes()
-        .map(|class| class.iter().map(&amount).fold(0.0, f64::max))
-        .sum()
+    instance.classes().map(|class| class.iter().map(&amount).fold(0.0, f64::max)).sum()
 }
 
 /// Why an [`Instance`] was refused; classes and items count from 0.
@@ -227,14 +205,12 @@ pub enum InstanceError {
 impl fmt::Display for InstanceError {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Budget { value } => write!(
-                out,
-                "the budget must be finite and not negative, but is {value}"
-            ),
-            Self::EmptyClass { class } => write!(
-                out,
-                "class {class} must have at least one item, but is empty"
-            ),
+            Self::Budget { value } => {
+                write!(out, "the budget must be finite and not negative, but is {value}")
+            }
+            Self::EmptyClass { class } => {
+                write!(out, "class {class} must have at least one item, but is empty")
+            }
             Self::Cost { class, item, value } => {
                 write!(
                     out,
@@ -247,15 +223,10 @@ impl fmt::Display for InstanceError {
                     "class {class}, item {item}: the benefit must be finite and not negative, but is {value}"
                 )
             }
-            Self::TooMany { class, item } => write!(
-                out,
-                "class {class}, item {item}: there must be at most {} items in all",
-                u32::MAX
-            ),
-            Self::Total { of } => write!(
-                out,
-                "the largest {of}s of all classes must sum to a finite number"
-            ),
+            Self::TooMany { class, item } => {
+                write!(out, "class {class}, item {item}: there must be at most {} items in all", u32::MAX)
+            }
+            Self::Total { of } => write!(out, "the largest {of}s of all classes must sum to a finite number"),
         }
     }
 }
@@ -269,30 +240,16 @@ mod tests {
     fn build(budget: f64, classes: &[&[(f64, f64)]]) -> Result<Instance, InstanceError> {
         Instance::new(
             budget,
-            classes
-                .iter()
-                .map(|class| class.iter().copied().map(Item::from).collect::<Vec<_>>()),
+            classes.iter().map(|class| class.iter().copied().map(Item::from).collect::<Vec<_>>()),
         )
     }
 
     #[test]
     fn rows_come_back_as_they_went_in() -> Result<(), InstanceError> {
         let instance = build(3.0, &[&[(1.0, 2.0)], &[(0.0, 0.0), (5.0, 4.0)]])?;
-        assert_eq!(
-            (instance.len(), instance.is_empty(), instance.budget()),
-            (2, false, 3.0)
-        );
-        assert_eq!(
-            instance.class(1)[1],
-            Item {
-                cost: 5.0,
-                benefit: 4.0
-            }
-        );
-        assert_eq!(
-            instance.classes().map(<[Item]>::len).collect::<Vec<_>>(),
-            [1, 2]
-        );
+        assert_eq!((instance.len(), instance.is_empty(), instance.budget()), (2, false, 3.0));
+        assert_eq!(instance.class(1)[1], Item { cost: 5.0, benefit: 4.0 });
+        assert_eq!(instance.classes().map(<[Item]>::len).collect::<Vec<_>>(), [1, 2]);
         assert_eq!(instance.items().len(), 3);
         assert!(build(0.0, &[])?.is_empty());
         Ok(())
@@ -303,9 +260,7 @@ mod tests {
         let one = [(1.0, 1.0)];
         let huge = [(1.0, 1e308)];
         let refused = |budget, classes: &[&[(f64, f64)]], words: &[&str]| {
-            let Err(error) = build(budget, classes) else {
-                panic!("{classes:?} was accepted")
-            };
+            let Err(error) = build(budget, classes) else { panic!("{classes:?} was accepted") };
             let message = error.to_string();
             assert!(words.iter().all(|word| message.contains(word)), "{message}");
         };
@@ -313,16 +268,8 @@ mod tests {
         refused(f64::NAN, &[], &["budget", "NaN"]);
         refused(f64::INFINITY, &[], &["budget", "inf"]);
         refused(1.0, &[&one, &[]], &["class 1", "empty"]);
-        refused(
-            1.0,
-            &[&[(1.0, 1.0), (-0.5, 1.0)]],
-            &["class 0, item 1", "cost", "-0.5"],
-        );
-        refused(
-            1.0,
-            &[&one, &[(1.0, f64::NAN)]],
-            &["class 1, item 0", "benefit", "NaN"],
-        );
+        refused(1.0, &[&[(1.0, 1.0), (-0.5, 1.0)]], &["class 0, item 1", "cost", "-0.5"]);
+        refused(1.0, &[&one, &[(1.0, f64::NAN)]], &["class 1, item 0", "benefit", "NaN"]);
         refused(1.0, &[&huge, &huge], &["benefits", "sum"]);
     }
 }

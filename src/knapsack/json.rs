@@ -89,54 +89,32 @@ impl<'de> Visitor<'de> for Document {
         let (mut budget, mut classes, mut format, mut version) = (None, None, None, None);
         while let Some(key) = map.next_key::<String>()? {
             match key.as_str() {
-                "budget" => fill(
-                    &mut budget,
-                    "budget",
-                    map.next_value::<f64>().map_err(within("budget")),
-                )?,
+                "budget" => fill(&mut budget, "budget", map.next_value::<f64>().map_err(within("budget")))?,
                 "classes" => fill(&mut classes, "classes", map.next_value_seed(Classes))?,
-                "format" => fill(
-                    &mut format,
-                    "format",
-                    map.next_value::<String>().map_err(within("format")),
-                )?,
-                "version" => fill(
-                    &mut version,
-                    "version",
-                    map.next_value::<u64>().map_err(within("version")),
-                )?,
+                "format" => {
+                    fill(&mut format, "format", map.next_value::<String>().map_err(within("format")))?
+                }
+                "version" => {
+                    fill(&mut version, "version", map.next_value::<u64>().map_err(within("version")))?
+                }
                 _ => {
-                    return Err(de::Error::unknown_field(
-                        &key,
-                        &["budget", "classes", "format", "version"],
-                    ));
+                    return Err(de::Error::unknown_field(&key, &["budget", "classes", "format", "version"]));
                 }
             }
         }
         if let Some(format) = format.filter(|format| format != FORMAT) {
-            return Err(de::Error::custom(format_args!(
-                "format must be \"{FORMAT}\", but is {format:?}"
-            )));
+            return Err(de::Error::custom(format_args!("format must be \"{FORMAT}\", but is {format:?}")));
         }
         if let Some(version) = version.filter(|&version| version != VERSION) {
-            return Err(de::Error::custom(format_args!(
-                "version must be {VERSION}, but is {version}"
-            )));
+            return Err(de::Error::custom(format_args!("version must be {VERSION}, but is {version}")));
         }
         let budget = budget.ok_or_else(|| de::Error::missing_field("budget"))?;
-        Ok((
-            budget,
-            classes.ok_or_else(|| de::Error::missing_field("classes"))?,
-        ))
+        Ok((budget, classes.ok_or_else(|| de::Error::missing_field("classes"))?))
     }
 }
 
 /// Stores the value of a key that must not repeat.
-fn fill<V, E: de::Error>(
-    slot: &mut Option<V>,
-    key: &'static str,
-    value: Result<V, E>,
-) -> Result<(), E> {
+fn fill<V, E: de::Error>(slot: &mut Option<V>, key: &'static str, value: Result<V, E>) -> Result<(), E> {
     match slot.replace(value?) {
         Some(_) => Err(E::duplicate_field(key)),
         None => Ok(()),
@@ -183,18 +161,13 @@ impl<'de> DeserializeSeed<'de> for Class<'_> {
 
     fn deserialize<D: Deserializer<'de>>(self, json: D) -> Result<(), D::Error> {
         let class = self.0.class();
-        json.deserialize_seq(self)
-            .map_err(|error| place_once(class, error))
+        json.deserialize_seq(self).map_err(|error| place_once(class, error))
     }
 }
 
 /// Names the class, unless the error already does.
 fn place_once<E: de::Error>(class: usize, error: E) -> E {
-    if error.to_string().starts_with("class ") {
-        error
-    } else {
-        within(format_args!("class {class}"))(error)
-    }
+    if error.to_string().starts_with("class ") { error } else { within(format_args!("class {class}"))(error) }
 }
 
 impl<'de> Visitor<'de> for Class<'_> {
@@ -207,9 +180,8 @@ impl<'de> Visitor<'de> for Class<'_> {
     fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<(), A::Error> {
         loop {
             let (class, index) = (self.0.class(), self.0.item());
-            let read = items
-                .next_element_seed(Pair)
-                .map_err(within(format_args!("class {class}, item {index}")))?;
+            let read =
+                items.next_element_seed(Pair).map_err(within(format_args!("class {class}, item {index}")))?;
             let Some(item) = read else { return Ok(()) };
             self.0.push(item).map_err(de::Error::custom)?;
         }
@@ -235,17 +207,11 @@ impl<'de> Visitor<'de> for Pair {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut pair: A) -> Result<Item, A::Error> {
-        let cost = pair
-            .next_element()?
-            .ok_or_else(|| de::Error::invalid_length(0, &self))?;
-        let benefit = pair
-            .next_element()?
-            .ok_or_else(|| de::Error::invalid_length(1, &self))?;
+        let cost = pair.next_element()?.ok_or_else(|| de::Error::invalid_length(0, &self))?;
+        let benefit = pair.next_element()?.ok_or_else(|| de::Error::invalid_length(1, &self))?;
         match pair.next_element::<de::IgnoredAny>()? {
             None => Ok(Item { cost, benefit }),
-            Some(_) => Err(de::Error::custom(
-                "more than two numbers, expected [cost, benefit]",
-            )),
+            Some(_) => Err(de::Error::custom("more than two numbers, expected [cost, benefit]")),
         }
     }
 }
@@ -267,10 +233,7 @@ mod tests {
         let text = r#"{"format": "lod-knapsack", "version": 1, "budget": 2.5, "classes": [[[1, 2], [3e0, 4]], [[0, 0.1]]]}"#;
         let expected = Instance::new(
             2.5,
-            [
-                &[(1.0, 2.0), (3.0, 4.0)].map(Item::from)[..],
-                &[(0.0, 0.1)].map(Item::from),
-            ],
+            [&[(1.0, 2.0), (3.0, 4.0)].map(Item::from)[..], &[(0.0, 0.1)].map(Item::from)],
         )?;
         assert_eq!(Instance::from_json(text)?, expected);
         assert_eq!(Instance::read_json(text.as_bytes())?, expected);
@@ -285,74 +248,26 @@ mod tests {
             ("[]", &["budget", "line 1"]),
             (r#"{"budget": 1}"#, &["missing", "classes"]),
             (r#"{"classes": []}"#, &["missing", "budget"]),
-            (
-                r#"{"budget": 1, "budget": 2, "classes": []}"#,
-                &["duplicate", "budget", "column"],
-            ),
-            (
-                r#"{"budget": 1, "classes": [], "colour": 3}"#,
-                &["unknown", "colour", "column"],
-            ),
-            (
-                r#"{"budget": 1, "classes": []} x"#,
-                &["trailing", "column 30"],
-            ),
-            (
-                r#"{"budget": "1", "classes": []}"#,
-                &["budget", "string", "column"],
-            ),
-            (
-                r#"{"budget": -1, "classes": []}"#,
-                &["budget", "negative", "-1"],
-            ),
-            (
-                r#"{"budget": 1e999, "classes": []}"#,
-                &["budget", "out of range", "column"],
-            ),
-            (
-                r#"{"budget": 1, "version": 2, "classes": []}"#,
-                &["version", "1", "2"],
-            ),
-            (
-                r#"{"budget": 1, "format": "png", "classes": []}"#,
-                &["format", "png"],
-            ),
-            (
-                r#"{"budget": 1, "classes": {}}"#,
-                &["array of classes", "column"],
-            ),
-            (
-                r#"{"budget": 1, "classes": [3]}"#,
-                &["class 0", "array", "column"],
-            ),
-            (
-                r#"{"budget": 1, "classes": [[[1, 1]], []]}"#,
-                &["class 1", "empty", "column"],
-            ),
-            (
-                r#"{"budget": 1, "classes": [[[1, 1], 4]]}"#,
-                &["class 0, item 1", "[cost, benefit]", "column"],
-            ),
-            (
-                r#"{"budget": 1, "classes": [[[1]]]}"#,
-                &["class 0, item 0", "length 1", "column"],
-            ),
-            (
-                r#"{"budget": 1, "classes": [[[1, 2, 3]]]}"#,
-                &["class 0, item 0", "two numbers", "column"],
-            ),
+            (r#"{"budget": 1, "budget": 2, "classes": []}"#, &["duplicate", "budget", "column"]),
+            (r#"{"budget": 1, "classes": [], "colour": 3}"#, &["unknown", "colour", "column"]),
+            (r#"{"budget": 1, "classes": []} x"#, &["trailing", "column 30"]),
+            (r#"{"budget": "1", "classes": []}"#, &["budget", "string", "column"]),
+            (r#"{"budget": -1, "classes": []}"#, &["budget", "negative", "-1"]),
+            (r#"{"budget": 1e999, "classes": []}"#, &["budget", "out of range", "column"]),
+            (r#"{"budget": 1, "version": 2, "classes": []}"#, &["version", "1", "2"]),
+            (r#"{"budget": 1, "format": "png", "classes": []}"#, &["format", "png"]),
+            (r#"{"budget": 1, "classes": {}}"#, &["array of classes", "column"]),
+            (r#"{"budget": 1, "classes": [3]}"#, &["class 0", "array", "column"]),
+            (r#"{"budget": 1, "classes": [[[1, 1]], []]}"#, &["class 1", "empty", "column"]),
+            (r#"{"budget": 1, "classes": [[[1, 1], 4]]}"#, &["class 0, item 1", "[cost, benefit]", "column"]),
+            (r#"{"budget": 1, "classes": [[[1]]]}"#, &["class 0, item 0", "length 1", "column"]),
+            (r#"{"budget": 1, "classes": [[[1, 2, 3]]]}"#, &["class 0, item 0", "two numbers", "column"]),
             (
                 "{\"budget\": 1, \"classes\": [\n[[1, 2]], [[1, true]]]}",
                 &["class 1, item 0", "boolean", "line 2"],
             ),
-            (
-                r#"{"budget": 1, "classes": [[[1, NaN]]]}"#,
-                &["class 0, item 0", "column"],
-            ),
-            (
-                r#"{"budget": 1, "classes": [[[1, null]]]}"#,
-                &["class 0, item 0", "null", "column"],
-            ),
+            (r#"{"budget": 1, "classes": [[[1, NaN]]]}"#, &["class 0, item 0", "column"]),
+            (r#"{"budget": 1, "classes": [[[1, null]]]}"#, &["class 0, item 0", "null", "column"]),
             (
                 r#"{"budget": 1, "classes": [[[1, 2]], [[1, 2], [1e999, 2]]]}"#,
                 &["class 1, item 1", "out of range", "column"],
@@ -361,16 +276,10 @@ mod tests {
                 r#"{"budget": 1, "classes": [[[1, 2]], [[1, -2]]]}"#,
                 &["class 1, item 0", "benefit", "-2", "column"],
             ),
-            (
-                r#"{"budget": 1, "classes": [[[1, 2]], [[1, "#,
-                &["class 1, item 0", "EOF", "line 1"],
-            ),
+            (r#"{"budget": 1, "classes": [[[1, 2]], [[1, "#, &["class 1, item 0", "EOF", "line 1"]),
         ] {
             let message = error(text);
-            assert!(
-                words.iter().all(|word| message.contains(word)),
-                "{text}\n{message}"
-            );
+            assert!(words.iter().all(|word| message.contains(word)), "{text}\n{message}");
         }
     }
 
@@ -378,10 +287,7 @@ mod tests {
     fn deep_nesting_is_refused_at_the_first_wrong_level() {
         let text = format!(r#"{{"budget": 1, "classes": {}"#, "[".repeat(1_000_000));
         assert!(error(&text).contains("class 0, item 0"));
-        let skipped = format!(
-            r#"{{"budget": 1, "classes": [[[1, 2, {}"#,
-            "[".repeat(1_000_000)
-        );
+        let skipped = format!(r#"{{"budget": 1, "classes": [[[1, 2, {}"#, "[".repeat(1_000_000));
         assert!(error(&skipped).contains("class 0, item 0"));
     }
 

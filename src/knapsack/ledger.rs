@@ -46,27 +46,12 @@ pub(crate) struct Ledger<'a, T> {
 impl<'a, T: Number> Ledger<'a, T> {
     pub fn new(instance: &'a Instance, grids: Grids) -> Self {
         let (cost_unit, benefit_unit) = (grids.cost.unit, grids.benefit.unit);
-        let largest = |class: &[Item]| {
-            T::floor(
-                class.iter().map(|item| item.cost).fold(0.0, f64::max),
-                cost_unit,
-            )
-        };
-        let most = instance
-            .classes()
-            .fold(T::ZERO, |sum, class| sum + largest(class));
+        let largest =
+            |class: &[Item]| T::floor(class.iter().map(|item| item.cost).fold(0.0, f64::max), cost_unit);
+        let most = instance.classes().fold(T::ZERO, |sum, class| sum + largest(class));
         let enough = instance.budget() >= most.to_f64_up(cost_unit);
-        let budget = if enough {
-            most
-        } else {
-            T::floor(instance.budget(), cost_unit)
-        };
-        Self {
-            instance,
-            cost_unit,
-            benefit_unit,
-            budget,
-        }
+        let budget = if enough { most } else { T::floor(instance.budget(), cost_unit) };
+        Self { instance, cost_unit, benefit_unit, budget }
     }
 
     pub fn cost(&self, item: Item) -> T {
@@ -82,14 +67,8 @@ impl<'a, T: Number> Ledger<'a, T> {
     }
 
     pub fn totals(&self, choice: &[u32]) -> Totals<T> {
-        let chosen = choice
-            .iter()
-            .enumerate()
-            .map(|(class, &index)| self.item(class, index));
-        let start = Totals {
-            cost: T::ZERO,
-            benefit: T::ZERO,
-        };
+        let chosen = choice.iter().enumerate().map(|(class, &index)| self.item(class, index));
+        let start = Totals { cost: T::ZERO, benefit: T::ZERO };
         chosen.fold(start, |sum, item| Totals {
             cost: sum.cost + self.cost(item),
             benefit: sum.benefit + self.benefit(item),
@@ -108,11 +87,7 @@ impl<'a, T: Number> Ledger<'a, T> {
         let reached = totals.benefit.to_f64_up(self.benefit_unit);
         let upper_bound = upper_bound.map_or(reached, |bound| bound.max(reached));
         let optimal = upper_bound <= reached;
-        let gap = if optimal {
-            0.0
-        } else {
-            (upper_bound - benefit) / upper_bound
-        };
+        let gap = if optimal { 0.0 } else { (upper_bound - benefit) / upper_bound };
         Solution {
             choice,
             cost: totals.cost.to_f64(self.cost_unit),
@@ -146,12 +121,8 @@ impl<'a, T: Number> Ledger<'a, T> {
 /// By how much a choice exceeds the budget, on the finest grid there is: the budget may have lower bits than any cost.
 fn excess(instance: &Instance, choice: &[u32]) -> f64 {
     let wide = |value| WideSum::floor(value, LOWEST_UNIT);
-    let costs = instance
-        .classes()
-        .zip(choice)
-        .map(|(class, &index)| wide(class[index as usize].cost));
-    (costs.fold(WideSum::ZERO, |sum, cost| sum + cost) - wide(instance.budget()))
-        .to_f64(LOWEST_UNIT)
+    let costs = instance.classes().zip(choice).map(|(class, &index)| wide(class[index as usize].cost));
+    (costs.fold(WideSum::ZERO, |sum, cost| sum + cost) - wide(instance.budget())).to_f64(LOWEST_UNIT)
 }
 
 /// The cheapest item of each class; of equally cheap ones the best, then the first.

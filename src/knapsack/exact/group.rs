@@ -1,0 +1,156 @@
+//! Partial choices of a group of classes: the Pareto list that dynamic programming with dominance keeps.
+
+use super::super::dyadic::Number;
+use super::prices::{PricedClass, Prices};
+use super::relief::Relief;
+
+/// A partial choice, relative to the base.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct State<T> {
+    pub cost: T,
+    pub benefit: T,
+    pub loss: f64,
+    /// The last deviation from the base; 0 for none.
+    node: u32,
+    /// The deviation just made, as an index into the class plus 1, not yet a node; 0 for none.
+    fresh: u32,
+}
+
+/// A deviation and the ones before it.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    parent: u32,
+    class: u32,
+    item: u32,
+}
+
+/// All partial choices of some classes that may still be part of a better choice.
+#[derive(Clone, Debug)]
+pub(super) struct Group<T> {
+    /// By cost and by benefit, both strictly ascending.
+    pub states: Vec<State<T>>,
+    nodes: Vec<Node>,
+}
+
+/// Why a list was not extended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Halt {
+    /// It would outgrow its capacity.
+    Full,
+    /// The caller asked to stop.
+    Stopped,
+}
+
+/// Losses above the limit by less than this, relatively, are kept: they may be rounding.
+const SLOP: f64 = 1.0 + 1e-9;
+
+impl<T: Number> Group<T> {
+    /// The group of no classes: one state, the base.
+    pub fn new() -> Self {
+        let base = State { cost: T::ZERO, benefit: T::ZERO, loss: 0.0, node: 0, fresh: 0 };
+        Self { states: vec![base], nodes: vec![Node { parent: 0, class: 0, item: 0 }] }
+    }
+
+    /// Adds a class: every state with every alternative, without what is dominated or what must end with a gap above `limit`.
+    ///
+    /// `relief` is of all classes outside the group, the new one being inside.
+    pub fn extend(
+        &mut self,
+        prices: &Prices<T>,
+        class: &PricedClass<T>,
+        relief: &Relief,
+        limit: f64,
+        capacity: usize,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<(), Halt> {
+        let limit = limit * SLOP;
+        let mut next = Vec::with_capacity(self.states.len() * 2);
+        let mut run = |cost: T, benefit: T, loss: f64, fresh: u32| {
+            let mut cursor = relief.cursor();
+            for state in &self.states {
+                let (cost, loss) = (state.cost + cost, state.loss + loss);
+                if loss <= limit && loss + cursor.at(prices.cost_f64(prices.room - cost)) <= limit {
+                    next.push(State {
+                        cost,
+                        benefit: state.benefit + benefit,
+                        loss,
+                        node: state.node,
+                        fresh,
+                    });
+                }
+            }
+            if stop() {
+                return Err(Halt::Stopped);
+            }
+            if next.len() > 12 * capacity { Err(Halt::Full) } else { Ok(()) }
+        };
+        run(T::ZERO, T::ZERO, 0.0, 0)?;
+        for (i, alternative) in class.alternatives.iter().enumerate() {
+            if alternative.loss <= limit {
+                run(alternative.cost, alternative.benefit, alternative.loss, i as u32 + 1)?;
+            }
+        }
+        // The runs are sorted: the standard stable sort merges them.
+        next.sort_by(|a, b| a.cost.cmp(&b.cost).then(b.benefit.cmp(&a.benefit)));
+        keep_undominated(&mut next);
+        if next.len() > capacity {
+            return Err(Halt::Full);
+        }
+        self.states = next;
+        self.record(class);
+        Ok(())
+    }
+
+    fn record(&mut self, class: &PricedClass<T>) {
+        for state in &mut self.states {
+            if state.fresh > 0 {
+                let item = class.alternatives[state.fresh as usize - 1].item;
+                self.nodes.push(Node { parent: state.node, class: class.class, item });
+                state.node = self.nodes.len() as u32 - 1;
+                state.fresh = 0;
+            }
+        }
+    }
+
+    /// Writes the deviations of state `index` into `choice`.
+    pub fn write(&self, index: usize, choice: &mut [u32]) {
+        let mut at = self.states[index].node;
+        while at != 0 {
+            let node = self.nodes[at as usize];
+            choice[node.class as usize] = node.item;
+            at = node.parent;
+        }
+    }
+}
+
+fn keep_undominated<T: Number>(states: &mut Vec<State<T>>) {
+    let mut best: Option<T> = None;
+    states.retain(|state| {
+        let better = best.is_none_or(|best| state.benefit > best);
+        if better {
+            best = Some(state.benefit);
+        }
+        better
+    });
+}
+
+/// The pair of states with the highest joint benefit whose costs fit into `room`.
+pub(super) fn best_pair<T: Number>(a: &[State<T>], b: &[State<T>], room: T) -> Option<(usize, usize)> {
+    let mut best = None;
+    let mut record = None;
+    let mut j = b.len();
+    for (i, state) in a.iter().enumerate() {
+        let left = room - state.cost;
+        while j > 0 && b[j - 1].cost > left {
+            j -= 1;
+        }
+        if j == 0 {
+            break;
+        }
+        let benefit = state.benefit + b[j - 1].benefit;
+        if record.is_none_or(|record| benefit > record) {
+            (record, best) = (Some(benefit), Some((i, j - 1)));
+        }
+    }
+    best
+}
