@@ -1,6 +1,7 @@
 //! Partial choices of a group of classes: the Pareto list that dynamic programming with dominance keeps.
 
 use super::super::dyadic::Number;
+use super::super::ledger::Totals;
 use super::prices::{PricedClass, Prices};
 use super::relief::Relief;
 
@@ -14,6 +15,12 @@ pub(super) struct State<T> {
     node: u32,
     /// The deviation just made, as an index into the class plus 1, not yet a node; 0 for none.
     fresh: u32,
+}
+
+impl<T: Number> State<T> {
+    pub fn totals(&self) -> Totals<T> {
+        Totals { cost: self.cost, benefit: self.benefit }
+    }
 }
 
 /// A deviation and the ones before it.
@@ -110,6 +117,13 @@ impl<T: Number> Group<T> {
                 state.fresh = 0;
             }
         }
+    }
+
+    /// Indices of the states, by loss ascending.
+    pub fn by_loss(&self) -> Vec<u32> {
+        let mut order: Vec<u32> = (0..self.states.len() as u32).collect();
+        order.sort_by(|&a, &b| self.states[a as usize].loss.total_cmp(&self.states[b as usize].loss));
+        order
     }
 
     /// Writes the deviations of state `index` into `choice`.

@@ -2,10 +2,12 @@
 
 mod group;
 mod prices;
+mod quarters;
 mod relief;
 
 use self::group::{Group, Halt, best_pair};
-use self::prices::Prices;
+use self::prices::{PricedClass, Prices};
+use self::quarters::{Half, meet};
 use self::relief::Relief;
 use super::dyadic::{Number, WideSum};
 use super::greedy::relax;
@@ -37,6 +39,8 @@ struct Search<'a, T> {
     totals: Totals<T>,
     /// No choice has a benefit above this.
     bound: T,
+    /// The longest list of the last level.
+    states: usize,
 }
 
 impl<T: Number> Search<'_, T> {
@@ -59,41 +63,205 @@ impl<T: Number> Search<'_, T> {
     }
 
     /// Looks at every choice with a gap up to `level`.
-    fn explore(&mut self, level: f64, capacity: usize, stop: &mut dyn FnMut() -> bool) -> Result<(), Halt> {
-        let mut groups = [Group::new(), Group::new()];
+    ///
+    /// Two lists grow towards each other, the shorter one first, and are joined after each class. Once one is full, a third list of
+    /// the classes left is tried against both: complete where it holds all of them, else a search for a better choice.
+    fn explore(&mut self, level: f64, stop: &mut dyn FnMut() -> bool) -> Result<(), Halt> {
         let classes = std::mem::take(&mut self.prices.classes);
-        let mut inside = [Vec::new(), Vec::new()];
+        let mut halves = [Group::new(), Group::new()];
+        let mut sides = vec![Side::Open; classes.len()];
         let mut result = Ok(());
-        for (i, class) in classes.iter().enumerate() {
-            let limit = level.min(self.limit());
-            if limit < 0.0 || class.alternatives[0].loss > limit {
+        for at in 0..classes.len() {
+            if !self.matters(&classes[at], level) {
                 break;
             }
-            let side = usize::from(groups[1].states.len() < groups[0].states.len());
-            inside[side].push(i);
-            let outside = classes
-                .iter()
-                .enumerate()
-                .filter(|(j, _)| inside[side].binary_search(j).is_err())
-                .map(|(_, class)| class);
-            let relief = Relief::of(self.prices.lambda, outside);
-            result = groups[side].extend(&self.prices, class, &relief, limit, capacity, stop);
+            let side = usize::from(halves[1].states.len() < halves[0].states.len());
+            sides[at] = [Side::Left, Side::Right][side];
+            let relief = Relief::of(self.prices.lambda, outside(&classes, &sides, sides[at]));
+            result = halves[side].extend(&self.prices, &classes[at], &relief, self.cap(level), HALF, stop);
             if result.is_err() {
+                sides[at] = Side::Open;
                 break;
             }
-            if let Some((a, b)) = best_pair(&groups[0].states, &groups[1].states, self.prices.room) {
-                let gain = groups[0].states[a].benefit + groups[1].states[b].benefit;
-                if self.prices.totals.benefit + gain > self.totals.benefit {
-                    let mut choice = self.prices.base.clone();
-                    groups[0].write(a, &mut choice);
-                    groups[1].write(b, &mut choice);
-                    self.offer(choice);
-                }
-            }
+            self.join(&halves, None);
         }
+        if result == Err(Halt::Full) {
+            result = self.sweep(&classes, &mut sides, &halves, level, 64, stop);
+        }
+        if result == Err(Halt::Full) {
+            result = self.quarters(&classes, f64::INFINITY, EAGER, stop);
+        }
+        if result == Err(Halt::Full) {
+            result = self.quarters(&classes, level, PATIENT, stop);
+        }
+        if result == Err(Halt::Full) {
+            for side in sides.iter_mut().filter(|side| **side == Side::Third) {
+                *side = Side::Open;
+            }
+            result = self.sweep(&classes, &mut sides, &halves, level, THIRD, stop);
+        }
+        self.states = halves.iter().map(|half| half.states.len()).max().unwrap_or(1);
         self.prices.classes = classes;
         result
     }
+
+    /// The gap above which nothing is of interest.
+    fn cap(&self, level: f64) -> f64 {
+        level.min(self.limit())
+    }
+
+    fn matters(&self, class: &PricedClass<T>, level: f64) -> bool {
+        !self.proved() && class.alternatives[0].loss <= self.cap(level) * (1.0 + 1e-9)
+    }
+
+    /// Joins both halves, around a state of the third list if given, and keeps the result where it is better.
+    fn join(&mut self, halves: &[Group<T>; 2], third: Option<(&Group<T>, usize)>) {
+        let middle =
+            third.map_or(Totals { cost: T::ZERO, benefit: T::ZERO }, |(group, i)| group.states[i].totals());
+        let Some((a, b)) = best_pair(&halves[0].states, &halves[1].states, self.prices.room - middle.cost)
+        else {
+            return;
+        };
+        let gain = halves[0].states[a].benefit + halves[1].states[b].benefit + middle.benefit;
+        if self.prices.totals.benefit + gain > self.totals.benefit {
+            let mut choice = self.prices.base.clone();
+            halves[0].write(a, &mut choice);
+            halves[1].write(b, &mut choice);
+            if let Some((group, i)) = third {
+                group.write(i, &mut choice);
+            }
+            self.offer(choice);
+        }
+    }
+
+    fn sweep(
+        &mut self,
+        classes: &[PricedClass<T>],
+        sides: &mut [Side],
+        halves: &[Group<T>; 2],
+        level: f64,
+        tries: usize,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<(), Halt> {
+        let mut third = Group::new();
+        let mut result = Ok(());
+        for at in 0..classes.len() {
+            if sides[at] != Side::Open || !self.matters(&classes[at], level) {
+                continue;
+            }
+            sides[at] = Side::Third;
+            let relief = Relief::of(self.prices.lambda, outside(classes, sides, Side::Third));
+            result = third.extend(&self.prices, &classes[at], &relief, self.cap(level), tries, stop);
+            if result.is_err() {
+                break;
+            }
+        }
+        let mut order: Vec<usize> = (0..third.states.len()).collect();
+        order.sort_by(|&a, &b| third.states[a].loss.total_cmp(&third.states[b].loss));
+        for i in order {
+            if third.states[i].loss > self.limit() || self.proved() {
+                break;
+            }
+            self.join(halves, Some((&third, i)));
+            if stop() {
+                return Err(Halt::Stopped);
+            }
+        }
+        if self.proved() { Ok(()) } else { result }
+    }
+
+    /// Looks at every choice with a gap up to `level` in the memory of four short lists.
+    fn quarters(
+        &mut self,
+        classes: &[PricedClass<T>],
+        level: f64,
+        work_limit: u64,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<(), Halt> {
+        let matter = classes.iter().take_while(|class| self.matters(class, level)).count();
+        let sides: Vec<usize> = (0..classes.len()).map(|at| if at < matter { at % 4 } else { 4 }).collect();
+        let mut groups = [Group::new(), Group::new(), Group::new(), Group::new()];
+        for at in 0..matter {
+            let side = sides[at];
+            let open = (0..classes.len())
+                .filter(|&other| other > at || sides[other] != side)
+                .map(|other| &classes[other]);
+            let relief = Relief::of(self.prices.lambda, open);
+            groups[side].extend(&self.prices, &classes[at], &relief, self.cap(level), QUARTER, stop)?;
+        }
+        let [a, b, c, d] = &groups;
+        let halves = [Half::new(a, b), Half::new(c, d)];
+        let limit = self.cap(level) * (1.0 + 1e-9);
+        let work: u64 = halves.iter().map(|half| half.count(limit)).sum();
+        if work > work_limit {
+            return Err(Halt::Full);
+        }
+        for (held, streamed, floor) in [(0, 1, -1.0), (1, 0, limit / 2.0)] {
+            let limit = limit.min(self.cap(level) * (1.0 + 1e-9));
+            let floor = if floor < 0.0 { floor } else { limit / 2.0 };
+            let to_beat = self.totals.benefit - self.prices.totals.benefit;
+            let prices = self.prices.clone();
+            meet(&prices, [&halves[held], &halves[streamed]], floor, limit, to_beat, stop, &mut |x, y| {
+                let mut choice = self.prices.base.clone();
+                for (pair, half) in [(x, &halves[held]), (y, &halves[streamed])] {
+                    half.first.write(pair.at[0] as usize, &mut choice);
+                    half.second.write(pair.at[1] as usize, &mut choice);
+                }
+                self.offer(choice);
+                (self.totals.benefit - self.prices.totals.benefit, self.cap(level))
+            })?;
+        }
+        self.settle(level);
+        Ok(())
+    }
+
+    /// What is left once every choice with a gap up to `level` is known.
+    fn settle(&mut self, level: f64) {
+        let above = (level * (1.0 + 1e-10)).max(f64::MIN_POSITIVE);
+        let rest = if level >= self.limit() { self.totals.benefit } else { self.prices.benefit_at(above) };
+        self.bound = self.bound.min(rest);
+    }
+
+    /// The number of states grows like the exponential of the level's root: this factor asks for about five times as many.
+    fn growth(&self) -> f64 {
+        let magnitude = (self.states.max(10) as f64).ln();
+        ((magnitude + 5f64.ln()) / magnitude).powi(2).min(2.0)
+    }
+
+    /// The next level worth a look: about four times the states, and the largest gap up to there that a choice can have.
+    fn next_level(&self, level: f64) -> f64 {
+        let reach = self.prices.gap(self.prices.benefit_at(level) + self.prices.benefit_step);
+        reach.max(self.prices.gap(self.bound))
+    }
+}
+
+/// States that each of the two lists may hold.
+const HALF: usize = 1 << 21;
+/// States of the third list: each costs a pass over the other two.
+const THIRD: usize = 1 << 12;
+
+/// States that each of four lists may hold.
+const QUARTER: usize = 1 << 22;
+/// Combinations worth streaming for a proof at once.
+const EAGER: u64 = 1 << 30;
+/// Combinations worth streaming for the next level.
+const PATIENT: u64 = 1 << 34;
+
+/// Where a class is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Open,
+    Left,
+    Right,
+    Third,
+}
+
+fn outside<'a, T>(
+    classes: &'a [PricedClass<T>],
+    sides: &'a [Side],
+    side: Side,
+) -> impl Iterator<Item = &'a PricedClass<T>> + Clone {
+    classes.iter().zip(sides).filter(move |&(_, &other)| other != side).map(|(class, _)| class)
 }
 
 fn search<T: Number>(ledger: &Ledger<'_, T>, quick: Solution, stop: &mut dyn FnMut() -> bool) -> Solution {
@@ -101,20 +269,14 @@ fn search<T: Number>(ledger: &Ledger<'_, T>, quick: Solution, stop: &mut dyn FnM
     let prices = Prices::new(ledger, relaxation);
     let totals = ledger.totals(&quick.choice);
     let bound = prices.benefit_at(0.0);
-    let mut search = Search { ledger, prices, choice: quick.choice.clone(), totals, bound };
-    let mut level = first_level(&search);
+    let mut search = Search { ledger, prices, choice: quick.choice.clone(), totals, bound, states: 1 };
+    let mut level = search.next_level(first_level(&search));
     while !search.proved() {
-        match search.explore(level, 1 << 21, stop) {
-            Ok(()) => {
-                search.bound = if level >= search.limit() {
-                    search.totals.benefit
-                } else {
-                    search.prices.benefit_at(level)
-                };
-                level *= 2.0;
-            }
-            Err(_) => break,
+        if search.explore(level, stop).is_err() {
+            break;
         }
+        search.settle(level);
+        level = search.next_level(level * search.growth());
     }
     let bound = search.bound.to_f64_up(ledger.benefit_unit);
     ledger.solution(search.choice, search.totals, Some(bound), quick.lambda)

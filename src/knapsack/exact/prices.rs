@@ -74,7 +74,7 @@ impl<T: Number> Prices<T> {
             classes.push(price_class(ledger, lambda, class as u32, best, &useful));
         }
         classes.retain(|class| !class.alternatives.is_empty());
-        classes.sort_by(|a, b| a.alternatives[0].loss.total_cmp(&b.alternatives[0].loss));
+        order(&mut classes);
         let totals = ledger.totals(&base);
         let divisor = |amount: fn(&Alternative<T>) -> T| {
             let all = classes.iter().flat_map(|class| &class.alternatives);
@@ -114,6 +114,28 @@ impl<T: Number> Prices<T> {
     pub fn cost_f64(&self, cost: T) -> f64 {
         cost.to_f64(self.cost_unit)
     }
+}
+
+/// Sorts by the least loss; of equal ones, classes that can go up and classes that can go down take turns.
+fn order<T: Number>(classes: &mut Vec<PricedClass<T>>) {
+    let key = |class: &PricedClass<T>| (class.alternatives[0].loss, class.alternatives[0].cost > T::ZERO);
+    classes.sort_by(|a, b| key(a).0.total_cmp(&key(b).0));
+    let mut turns = [0; 2];
+    let mut last = f64::NAN;
+    let mut keyed: Vec<_> = std::mem::take(classes)
+        .into_iter()
+        .map(|class| {
+            let (loss, rises) = key(&class);
+            if loss != last {
+                (turns, last) = ([0; 2], loss);
+            }
+            let turn = &mut turns[usize::from(rises)];
+            *turn += 1;
+            (*turn, class)
+        })
+        .collect();
+    keyed.sort_by(|a, b| key(&a.1).0.total_cmp(&key(&b.1).0).then(a.0.cmp(&b.0)));
+    classes.extend(keyed.into_iter().map(|(_, class)| class));
 }
 
 fn signed_wide(value: f64) -> WideProduct {
