@@ -37,7 +37,12 @@ pub(super) struct Group<T> {
     /// By cost and by benefit, both strictly ascending.
     pub states: Vec<State<T>>,
     nodes: Vec<Node>,
+    /// How many nodes there may be before unreachable ones are dropped.
+    nodes_allowed: usize,
 }
+
+/// Nodes kept beyond twice the reachable ones: fewer cost time, more cost memory (12 bytes each).
+const NODES: usize = 1 << 20;
 
 /// Why a list was not extended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,7 +60,7 @@ impl<T: Number> Group<T> {
     /// The group of no classes: one state, the base.
     pub fn new() -> Self {
         let base = State { cost: T::ZERO, benefit: T::ZERO, loss: 0.0, node: 0, fresh: 0 };
-        Self { states: vec![base], nodes: vec![Node { parent: 0, class: 0, item: 0 }] }
+        Self { states: vec![base], nodes: vec![Node { parent: 0, class: 0, item: 0 }], nodes_allowed: NODES }
     }
 
     /// Adds a class: every state with every alternative, without what is dominated or what must end with a gap above `limit`.
@@ -71,6 +76,8 @@ impl<T: Number> Group<T> {
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<(), Halt> {
         let limit = limit * SLOP;
+        // Capacities are meant for states of 32 bytes.
+        let capacity = capacity * 32 / size_of::<State<T>>();
         let mut next = Vec::with_capacity(self.states.len() * 2);
         let mut run = |cost: T, benefit: T, loss: f64, fresh: u32| {
             let mut cursor = relief.cursor();
@@ -89,7 +96,7 @@ impl<T: Number> Group<T> {
             if stop() {
                 return Err(Halt::Stopped);
             }
-            if next.len() > 12 * capacity { Err(Halt::Full) } else { Ok(()) }
+            if next.len() > 4 * capacity { Err(Halt::Full) } else { Ok(()) }
         };
         run(T::ZERO, T::ZERO, 0.0, 0)?;
         for (i, alternative) in class.alternatives.iter().enumerate() {
@@ -108,14 +115,44 @@ impl<T: Number> Group<T> {
         Ok(())
     }
 
+    /// Turns fresh deviations into nodes.
     fn record(&mut self, class: &PricedClass<T>) {
-        for state in &mut self.states {
-            if state.fresh > 0 {
-                let item = class.alternatives[state.fresh as usize - 1].item;
-                self.nodes.push(Node { parent: state.node, class: class.class, item });
-                state.node = self.nodes.len() as u32 - 1;
-                state.fresh = 0;
+        for state in self.states.iter_mut().filter(|state| state.fresh > 0) {
+            let item = class.alternatives[state.fresh as usize - 1].item;
+            self.nodes.push(Node { parent: state.node, class: class.class, item });
+            state.node = self.nodes.len() as u32 - 1;
+            state.fresh = 0;
+        }
+        if self.nodes.len() > self.nodes_allowed {
+            self.forget_unreachable();
+            self.nodes_allowed = 2 * self.nodes.len() + NODES;
+        }
+    }
+
+    /// Drops nodes that no state leads to; parents always come before their children.
+    fn forget_unreachable(&mut self) {
+        let mut place = vec![0u32; self.nodes.len()];
+        for state in &self.states {
+            place[state.node as usize] = 1;
+        }
+        place[0] = 1;
+        for at in (1..place.len()).rev() {
+            if place[at] == 1 {
+                place[self.nodes[at].parent as usize] = 1;
             }
+        }
+        let mut kept = 0;
+        for at in 0..place.len() {
+            if place[at] == 1 {
+                let node = self.nodes[at];
+                self.nodes[kept] = Node { parent: place[node.parent as usize], ..node };
+                place[at] = kept as u32;
+                kept += 1;
+            }
+        }
+        self.nodes.truncate(kept);
+        for state in &mut self.states {
+            state.node = place[state.node as usize];
         }
     }
 

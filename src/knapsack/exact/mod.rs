@@ -11,7 +11,7 @@ use self::quarters::{Half, meet};
 use self::relief::Relief;
 use super::dyadic::{Number, WideSum};
 use super::greedy::relax;
-use super::ledger::{Grids, Ledger, Totals};
+use super::ledger::{Grids, Ledger, Totals, UpperBound};
 use super::{Instance, Solution, greedy};
 
 /// Solves to proved optimality, or as far as `stop` allows.
@@ -193,7 +193,7 @@ impl<T: Number> Search<'_, T> {
         let halves = [Half::new(a, b), Half::new(c, d)];
         let limit = self.cap(level) * (1.0 + 1e-9);
         let work: u64 = halves.iter().map(|half| half.count(limit)).sum();
-        if work > work_limit {
+        if work > work_limit || halves.iter().any(|half| half.count(limit / 2.0) > HELD) {
             return Err(Halt::Full);
         }
         for (held, streamed, floor) in [(0, 1, -1.0), (1, 0, limit / 2.0)] {
@@ -228,10 +228,10 @@ impl<T: Number> Search<'_, T> {
         ((magnitude + 5f64.ln()) / magnitude).powi(2).min(2.0)
     }
 
-    /// The next level worth a look: about four times the states, and the largest gap up to there that a choice can have.
+    /// The largest gap up to `level`, and worth a look, that a choice can have.
     fn next_level(&self, level: f64) -> f64 {
-        let reach = self.prices.gap(self.prices.benefit_at(level) + self.prices.benefit_step);
-        reach.max(self.prices.gap(self.bound))
+        let beyond = self.prices.benefit_at(level.min(self.limit()) * (1.0 + 1e-10));
+        self.prices.gap(beyond + self.prices.benefit_step).max(self.prices.gap(self.bound))
     }
 }
 
@@ -241,7 +241,9 @@ const HALF: usize = 1 << 21;
 const THIRD: usize = 1 << 12;
 
 /// States that each of four lists may hold.
-const QUARTER: usize = 1 << 22;
+const QUARTER: usize = 1 << 21;
+/// Combinations of one half that may be held for the other to be streamed past.
+const HELD: u64 = 1 << 24;
 /// Combinations worth streaming for a proof at once.
 const EAGER: u64 = 1 << 30;
 /// Combinations worth streaming for the next level.
@@ -279,7 +281,8 @@ fn search<T: Number>(ledger: &Ledger<'_, T>, quick: Solution, stop: &mut dyn FnM
         level = search.next_level(level * search.growth());
     }
     let bound = search.bound.to_f64_up(ledger.benefit_unit);
-    ledger.solution(search.choice, search.totals, Some(bound), quick.lambda)
+    let bound = if search.proved() { UpperBound::Met(bound) } else { UpperBound::Open(bound) };
+    ledger.solution(search.choice, search.totals, quick.lambda, bound)
 }
 
 fn first_level<T: Number>(search: &Search<'_, T>) -> f64 {

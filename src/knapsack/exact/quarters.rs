@@ -86,50 +86,67 @@ impl<'a, T: Number> Half<'a, T> {
     }
 }
 
-/// Predecessor search by cost: marks that say where nothing is, then buckets of equal width, then bisection.
+/// Predecessor search by cost: a filter that says where nothing is, then buckets of equal width, then bisection.
 struct Index<'a, T> {
     pairs: &'a [Pair<T>],
     starts: Vec<u32>,
     least: f64,
     scale: f64,
-    /// One bit per [`MARKS`]th of a bucket: small enough for the cache, which most queries need not leave.
-    marks: Vec<u64>,
+    /// Costs are told apart by cells as wide as the room that may be left over.
+    cell: f64,
+    /// One bit per hashed cell, set where a pair's cost lies: small enough for the cache, which most queries need not leave.
+    filter: Vec<u64>,
 }
 
-/// Marks per bucket: more of them answer more queries, but leave the cache earlier.
-const MARKS: f64 = 16.0;
+/// Filter bits per pair, at least: more of them answer more queries, but leave the cache earlier.
+const FILTER_BITS: usize = 16;
 
 impl<'a, T: Number> Index<'a, T> {
-    fn new(prices: &Prices<T>, pairs: &'a [Pair<T>]) -> Self {
+    /// An index for queries that accept costs within `width` below the one asked for.
+    fn new(prices: &Prices<T>, pairs: &'a [Pair<T>], width: f64) -> Self {
         let cost = |i: usize| prices.cost_f64(pairs[i].totals.cost);
         let least = cost(0);
-        let width = (cost(pairs.len() - 1) - least).max(f64::MIN_POSITIVE);
-        let scale = (2.0 * pairs.len() as f64 / width).min(f64::MAX);
-        let mut index = Self { pairs, starts: Vec::new(), least, scale, marks: Vec::new() };
-        index.marks.resize(index.mark(cost(pairs.len() - 1)) / 64 + 1, 0);
+        let spread = (cost(pairs.len() - 1) - least).max(f64::MIN_POSITIVE);
+        let scale = (2.0 * pairs.len() as f64 / spread).min(f64::MAX);
+        let filter = vec![0; (FILTER_BITS * pairs.len()).next_power_of_two().max(64) / 64];
+        let cell = width.max(f64::MIN_POSITIVE);
+        let mut index = Self { pairs, starts: Vec::new(), least, scale, cell, filter };
         for i in 0..pairs.len() {
-            let (bucket, mark) = (index.bucket(cost(i)), index.mark(cost(i)));
-            index.marks[mark / 64] |= 1 << (mark % 64);
+            let bucket = index.bucket(cost(i));
             index.starts.resize((bucket + 1).max(index.starts.len()), i as u32);
+            let (word, bit) = index.slot((cost(i) / cell).floor());
+            index.filter[word] |= bit;
         }
         index.starts.push(pairs.len() as u32);
         index
     }
 
+    /// The filter's word and bit of a cell (D. E. Knuth's multiplicative hashing).
+    fn slot(&self, cell: f64) -> (usize, u64) {
+        let hash = (cell as i64 as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
+        (hash as usize >> 6 & (self.filter.len() - 1), 1 << (hash & 63))
+    }
+
+    /// Whether a pair may cost between `cost` less the width and `cost`, give or take a rounding.
+    fn may_hold(&self, cost: f64) -> bool {
+        let low = ((cost - self.cell - cost.abs() * 1e-15) / self.cell).floor();
+        let high = (cost / self.cell).floor();
+        let holds = |cell: f64| {
+            let (word, bit) = self.slot(cell);
+            self.filter[word] & bit != 0
+        };
+        // Where a cell is narrower than a rounding, or cells leave the integers, the filter does not know.
+        high - low > 2.0
+            || high.abs() > 4e15
+            || low.abs() > 4e15
+            || holds(low)
+            || holds(high)
+            || (high - low > 1.0 && holds(low + 1.0))
+    }
+
     /// Rises with the cost, rounding included.
     fn bucket(&self, cost: f64) -> usize {
         ((cost - self.least) * self.scale) as usize
-    }
-
-    fn mark(&self, cost: f64) -> usize {
-        ((cost - self.least) * self.scale * MARKS) as usize
-    }
-
-    /// Whether a pair may cost between `cost` − `width` and `cost`, give or take a rounding.
-    fn may_hold(&self, cost: f64, width: f64) -> bool {
-        let low = self.mark(cost - width - cost.abs() * 1e-15);
-        let high = self.mark(cost).min(64 * self.marks.len() - 1);
-        high > low + 2 || (low..=high).any(|mark| self.marks[mark / 64] >> (mark % 64) & 1 == 1)
     }
 
     /// The dearest pair that costs at most `cost`: by dominance the best of those.
@@ -141,8 +158,11 @@ impl<'a, T: Number> Index<'a, T> {
     }
 }
 
+/// Takes a pair of combinations better than any before; returns the gain to beat and the limit from then on.
+pub(super) type Found<'a, T> = dyn FnMut(&Pair<T>, &Pair<T>) -> (T, f64) + 'a;
+
 /// Reports every pair of combinations, one of `held` with a loss up to half the limit and one of `streamed`, that gains more than the
-/// best so far. `found` returns the gain to beat and the limit from then on.
+/// best so far.
 pub(super) fn meet<T: Number>(
     prices: &Prices<T>,
     [held, streamed]: [&Half<'_, T>; 2],
@@ -150,25 +170,24 @@ pub(super) fn meet<T: Number>(
     limit: f64,
     to_beat: T,
     stop: &mut dyn FnMut() -> bool,
-    found: &mut dyn FnMut(&Pair<T>, &Pair<T>) -> (T, f64),
+    found: &mut Found<'_, T>,
 ) -> Result<(), Halt> {
     let pairs = held.list(limit / 2.0, stop)?;
     if pairs.is_empty() {
         return Ok(());
     }
-    let index = Index::new(prices, &pairs);
     // More room left over than this is too large a gap by itself.
     let width = limit / prices.lambda * (1.0 + 1e-9);
+    let index = Index::new(prices, &pairs, width);
     let best = std::cell::Cell::new((to_beat, limit));
     let visit = |pair: Pair<T>| {
         let left = prices.room - pair.totals.cost;
-        if !index.may_hold(prices.cost_f64(left), width) {
+        if !index.may_hold(prices.cost_f64(left)) {
             return;
         }
-        if let Some(other) = index.at_most(prices, left) {
-            if pair.totals.benefit + other.totals.benefit > best.get().0 {
-                best.set(found(other, &pair));
-            }
+        let gain = |other: &Pair<T>| pair.totals.benefit + other.totals.benefit;
+        if let Some(other) = index.at_most(prices, left).filter(|other| gain(other) > best.get().0) {
+            best.set(found(other, &pair));
         }
     };
     let row = || if stop() { Err(Halt::Stopped) } else { Ok(best.get().1) };
