@@ -19,15 +19,41 @@ use super::{Instance, Solution, greedy};
 /// `stop` is polled regularly and ends the search when it returns true; the best known choice then comes back with an honest upper bound
 /// and `optimal: false`.
 pub fn exact(instance: &Instance, stop: &mut dyn FnMut() -> bool) -> Solution {
+    exact_within(instance, Capacity::default(), stop)
+}
+
+fn exact_within(instance: &Instance, capacity: Capacity, stop: &mut dyn FnMut() -> bool) -> Solution {
     let quick = greedy(instance);
     if quick.optimal || !quick.feasible {
         return quick;
     }
     let grids = Grids::of(instance);
     match grids.bits() {
-        0..=64 => search(&Ledger::<i64>::new(instance, grids), quick, stop),
-        65..=128 => search(&Ledger::<i128>::new(instance, grids), quick, stop),
-        _ => search(&Ledger::<WideSum>::new(instance, grids), quick, stop),
+        0..=64 => search(&Ledger::<i64>::new(instance, grids), quick, capacity, stop),
+        65..=128 => search(&Ledger::<i128>::new(instance, grids), quick, capacity, stop),
+        _ => search(&Ledger::<WideSum>::new(instance, grids), quick, capacity, stop),
+    }
+}
+
+/// What the search may hold and how long it may try.
+#[derive(Clone, Copy, Debug)]
+struct Capacity {
+    /// States of 32 bytes that each of the two lists may hold, and each of the four.
+    list: usize,
+    /// States of the third list before and after a proof in four lists was tried: each costs a pass over the other two.
+    third: [usize; 2],
+    /// Combinations of one half that may be held for the other to be streamed past.
+    held: u64,
+    /// Combinations worth streaming for a proof at once.
+    eager: u64,
+    /// Combinations worth streaming for the next level.
+    patient: u64,
+}
+
+impl Default for Capacity {
+    /// About a gigabyte, and minutes at the very worst.
+    fn default() -> Self {
+        Self { list: 1 << 21, third: [1 << 6, 1 << 12], held: 1 << 24, eager: 1 << 30, patient: 1 << 34 }
     }
 }
 
@@ -39,6 +65,7 @@ struct Search<'a, T> {
     totals: Totals<T>,
     /// No choice has a benefit above this.
     bound: T,
+    capacity: Capacity,
     /// The longest list of the last level.
     states: usize,
 }
@@ -78,7 +105,14 @@ impl<T: Number> Search<'_, T> {
             let side = usize::from(halves[1].states.len() < halves[0].states.len());
             sides[at] = [Side::Left, Side::Right][side];
             let relief = Relief::of(self.prices.lambda, outside(&classes, &sides, sides[at]));
-            result = halves[side].extend(&self.prices, &classes[at], &relief, self.cap(level), HALF, stop);
+            result = halves[side].extend(
+                &self.prices,
+                &classes[at],
+                &relief,
+                self.cap(level),
+                self.capacity.list,
+                stop,
+            );
             if result.is_err() {
                 sides[at] = Side::Open;
                 break;
@@ -86,19 +120,19 @@ impl<T: Number> Search<'_, T> {
             self.join(&halves, None);
         }
         if result == Err(Halt::Full) {
-            result = self.sweep(&classes, &mut sides, &halves, level, 64, stop);
+            result = self.sweep(&classes, &mut sides, &halves, level, self.capacity.third[0], stop);
         }
         if result == Err(Halt::Full) {
-            result = self.quarters(&classes, f64::INFINITY, EAGER, stop);
+            result = self.quarters(&classes, f64::INFINITY, self.capacity.eager, stop);
         }
         if result == Err(Halt::Full) {
-            result = self.quarters(&classes, level, PATIENT, stop);
+            result = self.quarters(&classes, level, self.capacity.patient, stop);
         }
         if result == Err(Halt::Full) {
             for side in sides.iter_mut().filter(|side| **side == Side::Third) {
                 *side = Side::Open;
             }
-            result = self.sweep(&classes, &mut sides, &halves, level, THIRD, stop);
+            result = self.sweep(&classes, &mut sides, &halves, level, self.capacity.third[1], stop);
         }
         self.states = halves.iter().map(|half| half.states.len()).max().unwrap_or(1);
         self.prices.classes = classes;
@@ -187,13 +221,20 @@ impl<T: Number> Search<'_, T> {
                 .filter(|&other| other > at || sides[other] != side)
                 .map(|other| &classes[other]);
             let relief = Relief::of(self.prices.lambda, open);
-            groups[side].extend(&self.prices, &classes[at], &relief, self.cap(level), QUARTER, stop)?;
+            groups[side].extend(
+                &self.prices,
+                &classes[at],
+                &relief,
+                self.cap(level),
+                self.capacity.list,
+                stop,
+            )?;
         }
         let [a, b, c, d] = &groups;
         let halves = [Half::new(a, b), Half::new(c, d)];
         let limit = self.cap(level) * (1.0 + 1e-9);
         let work: u64 = halves.iter().map(|half| half.count(limit)).sum();
-        if work > work_limit || halves.iter().any(|half| half.count(limit / 2.0) > HELD) {
+        if work > work_limit || halves.iter().any(|half| half.count(limit / 2.0) > self.capacity.held) {
             return Err(Halt::Full);
         }
         for (held, streamed, floor) in [(0, 1, -1.0), (1, 0, limit / 2.0)] {
@@ -235,20 +276,6 @@ impl<T: Number> Search<'_, T> {
     }
 }
 
-/// States that each of the two lists may hold.
-const HALF: usize = 1 << 21;
-/// States of the third list: each costs a pass over the other two.
-const THIRD: usize = 1 << 12;
-
-/// States that each of four lists may hold.
-const QUARTER: usize = 1 << 21;
-/// Combinations of one half that may be held for the other to be streamed past.
-const HELD: u64 = 1 << 24;
-/// Combinations worth streaming for a proof at once.
-const EAGER: u64 = 1 << 30;
-/// Combinations worth streaming for the next level.
-const PATIENT: u64 = 1 << 34;
-
 /// Where a class is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
@@ -266,12 +293,18 @@ fn outside<'a, T>(
     classes.iter().zip(sides).filter(move |&(_, &other)| other != side).map(|(class, _)| class)
 }
 
-fn search<T: Number>(ledger: &Ledger<'_, T>, quick: Solution, stop: &mut dyn FnMut() -> bool) -> Solution {
+fn search<T: Number>(
+    ledger: &Ledger<'_, T>,
+    quick: Solution,
+    capacity: Capacity,
+    stop: &mut dyn FnMut() -> bool,
+) -> Solution {
     let Some(relaxation) = relax(ledger) else { return quick };
     let prices = Prices::new(ledger, relaxation);
     let totals = ledger.totals(&quick.choice);
     let bound = prices.benefit_at(0.0);
-    let mut search = Search { ledger, prices, choice: quick.choice.clone(), totals, bound, states: 1 };
+    let mut search =
+        Search { ledger, prices, choice: quick.choice.clone(), totals, bound, capacity, states: 1 };
     let mut level = search.next_level(first_level(&search));
     while !search.proved() {
         if search.explore(level, stop).is_err() {
@@ -292,4 +325,64 @@ fn first_level<T: Number>(search: &Search<'_, T>) -> f64 {
     let few = losses.get(20).copied().unwrap_or(f64::MAX);
     let benefit = search.totals.benefit.to_f64(search.ledger.benefit_unit);
     few.max(benefit * f64::EPSILON / 2.0).max(f64::MIN_POSITIVE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Item;
+    use super::*;
+    use proptest::prelude::*;
+
+    fn best_of_all(classes: &[Vec<(u32, u32)>], budget: u32) -> Option<u32> {
+        let mut sums = vec![(0, 0)];
+        for class in classes {
+            sums = sums.iter().flat_map(|&(c, b)| class.iter().map(move |&(d, e)| (c + d, b + e))).collect();
+        }
+        sums.into_iter().filter(|sum| sum.0 <= budget).map(|sum| sum.1).max()
+    }
+
+    /// Benefits close to the costs: all losses are small and all lists long.
+    fn hard_class() -> impl Strategy<Value = Vec<(u32, u32)>> {
+        prop::collection::vec((0u32..60, 0u32..6).prop_map(|(cost, extra)| (cost, cost + extra)), 1..5)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        /// Lists of a few states send even small instances through the third list and the four lists.
+        #[test]
+        fn every_path_finds_the_optimum(
+            classes in prop::collection::vec(hard_class(), 1..8),
+            budget in 0u32..300,
+            list in 1usize..40,
+            third in 0usize..4,
+            held in 0u64..100,
+        ) {
+            let items = classes.iter().map(|class| {
+                class.iter().map(|&(cost, benefit)| Item { cost: cost.into(), benefit: benefit.into() }).collect::<Vec<_>>()
+            });
+            let instance = Instance::new(budget.into(), items).expect("a valid instance");
+            let capacity = Capacity { list, third: [third, 4], held, eager: held, patient: 10 * held };
+            let solution = exact_within(&instance, capacity, &mut || false);
+            let best = best_of_all(&classes, budget);
+            prop_assert_eq!(solution.feasible, best.is_some());
+            let Some(best) = best.map(f64::from) else { return Ok(()) };
+            prop_assert!(solution.benefit <= best && solution.cost <= f64::from(budget));
+            prop_assert!(solution.upper_bound.is_some_and(|bound| bound >= best));
+            prop_assert!(!solution.optimal || solution.benefit == best);
+        }
+    }
+
+    #[test]
+    fn a_stopped_search_is_honest() {
+        let class = |i: u32| {
+            [0u32, 7, 13, 29]
+                .map(|k| Item { cost: f64::from(k * i % 97), benefit: f64::from(k * i % 97) * 1.5 })
+        };
+        let instance = Instance::new(1001.5, (1..60).map(class)).expect("a valid instance");
+        let stopped = exact_within(&instance, Capacity { list: 3, ..Capacity::default() }, &mut || true);
+        let proved = exact(&instance, &mut || false);
+        assert!(proved.optimal);
+        assert!(stopped.benefit <= proved.benefit && stopped.upper_bound >= Some(proved.benefit));
+    }
 }
