@@ -4,6 +4,7 @@ mod group;
 mod prices;
 mod quarters;
 mod relief;
+mod surcharge;
 
 use self::group::{Group, Halt, best_pair};
 use self::prices::{PricedClass, Prices};
@@ -302,7 +303,8 @@ fn search<T: Number>(
     let Some(relaxation) = relax(ledger) else { return quick };
     let prices = Prices::new(ledger, relaxation);
     let totals = ledger.totals(&quick.choice);
-    let bound = prices.benefit_at(0.0);
+    let linear = prices.benefit_at(0.0);
+    let bound = surcharge::bound(&prices).map_or(linear, |bound| bound.min(linear));
     let mut search =
         Search { ledger, prices, choice: quick.choice.clone(), totals, bound, capacity, states: 1 };
     let mut level = search.next_level(first_level(&search));

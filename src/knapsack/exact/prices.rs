@@ -111,6 +111,11 @@ impl<T: Number> Prices<T> {
         self.totals.benefit + gain.floor_to(self.benefit_step)
     }
 
+    /// Whether costs and benefits are counted in the same unit.
+    pub fn one_grid(&self) -> bool {
+        self.cost_unit == self.benefit_unit
+    }
+
     pub fn cost_f64(&self, cost: T) -> f64 {
         cost.to_f64(self.cost_unit)
     }
