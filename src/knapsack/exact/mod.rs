@@ -1,4 +1,13 @@
-//! The optimum, proved.
+//! The optimum, proved: deepening on the gap.
+//!
+//! At the critical price λ every class has a best item, the base, and every other item a *loss*. What a choice lacks to the Lagrangian bound, its gap,
+//! is the sum of its losses plus λ times the room it leaves: nothing in it is negative. So the choices with a gap up to some level are few, and
+//! if any exist, the best of them is the optimum. Levels rise until one does.
+//!
+//! - [`prices`]: base, losses and the bound. [`surcharge`]: a tighter bound where benefit = cost + a few constants.
+//! - [`group`]: lists of partial choices with dominance, pruned by [`relief`], the linear relaxation of the classes outside.
+//! - Two lists meet in the middle; when they are full, a third is tried against both (enough where choices that meet the bound
+//!   abound, as in subset sums), and [`quarters`] proves a level in the memory of four short lists.
 
 mod group;
 mod prices;
@@ -15,10 +24,19 @@ use super::greedy::relax;
 use super::ledger::{Grids, Ledger, Totals, UpperBound};
 use super::{Instance, Solution, greedy};
 
-/// Solves to proved optimality, or as far as `stop` allows.
+/// Solves to proved optimality, or as far as `stop` and a gigabyte of memory allow.
 ///
-/// `stop` is polled regularly and ends the search when it returns true; the best known choice then comes back with an honest upper bound
-/// and `optimal: false`.
+/// `stop` is polled several times a second and ends the search when it returns true; the best known choice then comes back with an
+/// honest upper bound and `optimal: false`. The same happens, without being asked, where a level's choices are too many to hold; polls never change
+/// what is found otherwise.
+///
+/// Milliseconds for uncorrelated, weakly correlated and level-of-detail instances of 400 classes; seconds for subset sums and constant surcharges
+/// up to 1e12. Exponential in the root of (level · choices per unit of loss) at worst: hardest are large amounts whose benefits
+/// differ from the costs by comparatively little, on no common grid.
+///
+/// After D. Pisinger, "A minimal algorithm for the multiple-choice knapsack problem", 1995 (expanding core, dominance, linear bounds of states), and E. Horowitz,
+/// S. Sahni, "Computing partitions with applications to the knapsack problem", 1974 (two lists). Departs from both by
+/// bounding the gap instead of starting from an incumbent.
 pub fn exact(instance: &Instance, stop: &mut dyn FnMut() -> bool) -> Solution {
     exact_within(instance, Capacity::default(), stop)
 }
