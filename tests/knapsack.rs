@@ -126,3 +126,122 @@ proptest! {
         check_both(&build(budget, &[class]), GRID)?;
     }
 }
+
+/// A small generator, so that the instances never change (G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number
+/// generators", 2014).
+struct SplitMix(u64);
+
+impl SplitMix {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A whole number from 1 to `range`.
+    fn whole(&mut self, range: f64) -> f64 {
+        1.0 + (self.unit() * range).floor()
+    }
+}
+
+/// Classes of `items` items each; the budget lies half-way between the cheapest and the dearest choice.
+fn generate(
+    classes: usize,
+    items: usize,
+    mut item: impl FnMut(&mut SplitMix, usize) -> (f64, f64),
+) -> Instance {
+    let mut random = SplitMix(classes as u64);
+    let classes: Vec<Vec<Item>> =
+        (0..classes).map(|_| (0..items).map(|i| Item::from(item(&mut random, i))).collect()).collect();
+    let dearest: f64 =
+        classes.iter().map(|class| class.iter().map(|item| item.cost).fold(0.0, f64::max)).sum();
+    build(((dearest + cheapest_cost(&classes)) / 2.0).floor(), &classes)
+}
+
+/// Proves the instance and holds the proof against the contract; returns the benefit.
+fn prove(instance: &Instance) -> f64 {
+    let (quick, proved) = (greedy(instance), exact(instance, &mut || false));
+    assert!(proved.optimal && proved.feasible && proved.gap == Some(0.0));
+    assert!(proved.cost <= instance.budget());
+    assert!(quick.benefit <= proved.benefit && Some(proved.benefit) <= quick.upper_bound);
+    let sum: f64 = instance.classes().zip(&proved.choice).map(|(class, &i)| class[i as usize].benefit).sum();
+    assert!((sum - proved.benefit).abs() <= 1e-9 * sum);
+    proved.benefit
+}
+
+#[test]
+fn the_1993_counterexample_is_proved() {
+    let first = [(0.1136, 0.4652), (1.7599, 5.0387), (18.8952, 34.5056), (346.7490, 618.5195)];
+    let second = [(0.1086, 0.3795), (0.3057, 0.6621), (5.2287, 2.1120), (21.4700, 6.1775)];
+    let instance = build(346.8607, &[first.map(Item::from).to_vec(), second.map(Item::from).to_vec()]);
+    assert_eq!(format!("{:.2}", greedy(&instance).benefit), "618.90");
+    assert_eq!(format!("{:.2}", prove(&instance)), "618.90");
+}
+
+#[test]
+fn uncorrelated_and_weakly_correlated_instances_of_400_classes_are_proved() {
+    for range in [1e3, 1e12] {
+        prove(&generate(400, 10, |random, _| (random.whole(range), random.whole(range))));
+        prove(&generate(400, 10, |random, _| {
+            let cost = random.whole(range);
+            (cost, (cost + (random.unit() - 0.5) * range / 5.0).max(0.0).floor())
+        }));
+    }
+}
+
+#[test]
+fn subset_sums_meet_the_budget_exactly() {
+    for range in [1e3, 1e6, 1e12] {
+        let instance = generate(100, 5, |random, _| {
+            let cost = random.whole(range);
+            (cost, cost)
+        });
+        assert_eq!(prove(&instance), instance.budget());
+    }
+}
+
+#[test]
+fn constant_surcharges_are_proved() {
+    let instance = generate(400, 5, |random, i| {
+        let cost = random.whole(1e9);
+        if i == 0 { (0.0, 0.0) } else { (cost, cost + 10.0) }
+    });
+    assert_eq!(
+        prove(&instance),
+        instance.budget() + 4000.0,
+        "every class takes a surcharge, and the budget is spent"
+    );
+}
+
+#[test]
+fn levels_of_detail_are_proved() {
+    let mut triangles = 0.0f64;
+    let mut weight = 0.0;
+    prove(&generate(400, 8, |random, level| {
+        if level == 0 {
+            triangles = 1000.0 + random.whole(200_000.0);
+            weight = 1.0 / (1e-3 + random.unit().powi(2));
+        } else {
+            triangles = (triangles / 2.0).ceil();
+        }
+        (triangles, weight * (1.0 - 0.5 / triangles))
+    }));
+}
+
+#[test]
+fn an_exhausted_patience_leaves_an_honest_bound() {
+    let instance = generate(60, 6, |random, _| {
+        let cost = random.whole(1e12);
+        (cost, cost + random.unit() * 20.0)
+    });
+    let mut polls = 0;
+    let stopped = exact(&instance, &mut || {
+        polls += 1;
+        polls > 40
+    });
+    assert!(!stopped.optimal && stopped.feasible && stopped.cost <= instance.budget());
+    assert!(stopped.upper_bound.is_some_and(|bound| bound > stopped.benefit));
+    assert!(stopped.benefit >= greedy(&instance).benefit);
+}

@@ -63,6 +63,18 @@ pub(crate) trait Number: Copy + Ord + Debug + Add<Output = Self> + Sub<Output = 
     /// The nearest `f64`, ties to even.
     fn to_f64(self, unit: i32) -> f64;
 
+    /// The same amount on the grid of products.
+    fn widen(self, unit: i32) -> WideProduct;
+
+    /// The amount rounded down from the grid of products; it must fit.
+    fn narrow(wide: WideProduct, unit: i32) -> Self;
+
+    /// The greatest common divisor of two amounts, for types that can tell; else one unit.
+    fn common_divisor(self, other: Self) -> Self;
+
+    /// The largest multiple of `divisor` that is not above, for types that can tell; else the amount itself.
+    fn floor_to(self, divisor: Self) -> Self;
+
     /// The lowest `f64` that is not below.
     fn to_f64_up(self, unit: i32) -> f64 {
         let nearest = self.to_f64(unit);
@@ -104,6 +116,29 @@ macro_rules! primitive_number {
                 let magnitude = self.unsigned_abs() as f64 * power_of_two(unit);
                 if self < 0 { -magnitude } else { magnitude }
             }
+
+            fn widen(self, unit: i32) -> WideProduct {
+                let magnitude =
+                    WideProduct::shifted(self.unsigned_abs().into(), (unit - PRODUCT_UNIT) as u32);
+                if self < 0 { magnitude.negated() } else { magnitude }
+            }
+
+            fn narrow(wide: WideProduct, unit: i32) -> Self {
+                let words = wide.shifted_down((unit - PRODUCT_UNIT) as u32).words;
+                (u128::from(words[1]) << 64 | u128::from(words[0])) as $type
+            }
+
+            fn common_divisor(self, other: Self) -> Self {
+                let (mut a, mut b) = (self.unsigned_abs(), other.unsigned_abs());
+                while b != 0 {
+                    (a, b) = (b, a % b);
+                }
+                a as $type
+            }
+
+            fn floor_to(self, divisor: Self) -> Self {
+                if divisor > 1 { self.div_euclid(divisor) * divisor } else { self }
+            }
         }
     };
 }
@@ -120,12 +155,25 @@ pub(crate) struct Wide<const N: usize> {
 /// Holds sums of up to 2^64 values of any finite `f64`, counted in the smallest positive one.
 pub(crate) type WideSum = Wide<36>;
 
+/// Holds sums of products of two `f64`, which span 2^-2148 … 2^2048, counted in the smallest.
+pub(crate) type WideProduct = Wide<68>;
+
+/// The exponent of the unit of [`WideProduct`].
+pub(crate) const PRODUCT_UNIT: i32 = 2 * LOWEST_UNIT;
+
+/// `sum + x·y`, exactly.
+pub(crate) fn add_product(sum: WideProduct, x: f64, y: f64) -> WideProduct {
+    let ((m, e), (n, f)) = (decompose(x.abs()), decompose(y.abs()));
+    let product = WideProduct::shifted(u128::from(m) * u128::from(n), (e + f - PRODUCT_UNIT) as u32);
+    if (x < 0.0) == (y < 0.0) { sum + product } else { sum - product }
+}
+
 impl<const N: usize> Wide<N> {
     fn is_negative(&self) -> bool {
         self.words[N - 1] >> 63 == 1
     }
 
-    fn negated(self) -> Self {
+    pub fn negated(self) -> Self {
         Self::ZERO_WORDS - self
     }
 
@@ -145,6 +193,28 @@ impl<const N: usize> Wide<N> {
             }
         }
         Self { words }
+    }
+
+    /// Divided by `2^shift`, rounded down.
+    fn shifted_down(&self, shift: u32) -> Self {
+        let (word, bit) = ((shift / 64) as usize, shift % 64);
+        let fill = if self.is_negative() { u64::MAX } else { 0 };
+        let at = |i: usize| u128::from(self.words.get(i).copied().unwrap_or(fill));
+        Self { words: std::array::from_fn(|i| ((at(i + word + 1) << 64 | at(i + word)) >> bit) as u64) }
+    }
+
+    /// Extended or cut to another width, keeping the sign.
+    fn resized<const M: usize>(&self) -> Wide<M> {
+        let fill = if self.is_negative() { u64::MAX } else { 0 };
+        Wide { words: std::array::from_fn(|i| self.words.get(i).copied().unwrap_or(fill)) }
+    }
+
+    /// Multiplied by `2^shift`.
+    fn shifted_up(&self, shift: u32) -> Self {
+        let (word, bit) = ((shift / 64) as usize, shift % 64);
+        let at = |i: usize| i.checked_sub(word).map_or(0, |i| u128::from(self.words[i]));
+        let joined = |i: usize| at(i) << 64 | if i > 0 { at(i - 1) } else { 0 };
+        Self { words: std::array::from_fn(|i| (joined(i) << bit >> 64) as u64) }
     }
 
     /// The sign against zero.
@@ -219,7 +289,27 @@ impl<const N: usize> Number for Wide<N> {
         if exponent > 1023 {
             return f64::INFINITY;
         }
-        (leading | u128::from(rest)) as f64 * power_of_two(exponent)
+        let leading = (leading | u128::from(rest)) as f64;
+        // Below the smallest `f64` (products only) in two steps; what is lost there is subnormal.
+        leading
+            * power_of_two(exponent.max(LOWEST_UNIT))
+            * power_of_two((exponent - LOWEST_UNIT).clamp(LOWEST_UNIT, 0))
+    }
+
+    fn widen(self, unit: i32) -> WideProduct {
+        self.resized().shifted_up((unit - PRODUCT_UNIT) as u32)
+    }
+
+    fn narrow(wide: WideProduct, unit: i32) -> Self {
+        wide.shifted_down((unit - PRODUCT_UNIT) as u32).resized()
+    }
+
+    fn common_divisor(self, _: Self) -> Self {
+        Self::shifted(1, 0)
+    }
+
+    fn floor_to(self, _: Self) -> Self {
+        self
     }
 }
 

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use super::dyadic::{Number, WideSum};
 use super::hull::{Step, compare_slopes, upper_hull_of};
-use super::ledger::{Grids, Ledger, Totals, cheapest};
+use super::ledger::{Grids, Ledger, Totals, UpperBound, cheapest};
 use super::{Instance, Solution};
 
 /// Solves by the slopes of the classes' upper hulls, steepest first.
@@ -36,13 +36,41 @@ fn solve<T: Number>(ledger: &Ledger<'_, T>) -> Solution {
     let steps = sorted_steps(ledger, &start);
     let mut filled = start.clone();
     let Some(critical) = filled.walk(&steps) else {
-        return ledger.solution(filled.choice, filled.totals, None, 0.0);
+        return ledger.solution(filled.choice, filled.totals, 0.0, UpperBound::Met(0.0));
     };
     let mut forced = start;
     forced.switch(critical.step.class, critical.step.to);
     forced.walk(&steps);
     let better = if forced.totals.benefit > filled.totals.benefit { forced } else { filled };
+<<<<<<< HEAD
     ledger.solution(better.choice, better.totals, critical.linear_bound(ledger), critical.slope(ledger))
+=======
+    let (slope, bound) = (critical.slope(ledger), critical.linear_bound(ledger));
+    ledger.solution(better.choice, better.totals, slope, bound)
+}
+
+/// The integer part of the linear relaxation's optimum: every step steeper than the critical one taken.
+#[derive(Clone, Debug)]
+pub(crate) struct Relaxation {
+    pub choice: Vec<u32>,
+    /// The slope of the step that the budget cuts; 0 when none is cut.
+    pub lambda: f64,
+}
+
+/// Solves the linear relaxation; `None` when nothing is feasible.
+pub(crate) fn relax<T: Number>(ledger: &Ledger<'_, T>) -> Option<Relaxation> {
+    let mut attempt = Attempt::new(ledger, cheapest(ledger.instance));
+    if attempt.totals.cost > ledger.budget {
+        return None;
+    }
+    for step in sorted_steps(ledger, &attempt) {
+        if attempt.with(step.class, step.to).cost > ledger.budget {
+            return Some(Relaxation { choice: attempt.choice, lambda: step.geometry(ledger).slope() });
+        }
+        attempt.switch(step.class, step.to);
+    }
+    Some(Relaxation { choice: attempt.choice, lambda: 0.0 })
+>>>>>>> knap
 }
 
 /// A step from one item of a class's hull to the next.
@@ -142,19 +170,19 @@ impl<T: Number> Critical<T> {
         self.step.geometry(ledger).slope()
     }
 
-    /// The linear relaxation's optimum, rounded up: the steeper steps and the part of this one that fits. `None` where no part fits,
-    /// so that the totals before it are the optimum.
-    fn linear_bound(&self, ledger: &Ledger<'_, T>) -> Option<f64> {
+    /// The linear relaxation's optimum, rounded up: the steeper steps and the part of this one that fits. Met where no part fits:
+    /// the totals before it are the optimum.
+    fn linear_bound(&self, ledger: &Ledger<'_, T>) -> UpperBound {
         let Step { from, to } = self.step.geometry(ledger);
         let room = ledger.budget - self.before.cost;
         if room == T::ZERO {
-            return None;
+            return UpperBound::Met(0.0);
         }
         let run = ledger.cost(to) - ledger.cost(from);
         let rise = ledger.benefit(to) - ledger.benefit(from);
         let part = (room.to_f64_up(ledger.cost_unit) / run.to_f64_down(ledger.cost_unit)).next_up().min(1.0);
         let gain = (part * rise.to_f64_up(ledger.benefit_unit)).next_up();
-        Some((self.before.benefit.to_f64_up(ledger.benefit_unit) + gain).next_up())
+        UpperBound::Open((self.before.benefit.to_f64_up(ledger.benefit_unit) + gain).next_up())
     }
 }
 

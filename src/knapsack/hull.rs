@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::Item;
-use super::dyadic::{LOWEST_UNIT, Number, Wide, decompose};
+use super::dyadic::{Number, WideProduct, add_product, decompose};
 
 /// Writes into `hull` the indices of the upper convex hull of `items`, in order of cost, from the cheapest item (of equally cheap
 /// ones the highest benefit, then the lowest index) to the one with the highest benefit.
@@ -84,9 +84,9 @@ pub fn compare_slopes(a: Step, b: Step) -> Ordering {
 
 /// An exact difference of two `f64`, as the unevaluated sum of its rounded value and the rounding error.
 #[derive(Clone, Copy)]
-struct Difference {
-    high: f64,
-    low: f64,
+pub(crate) struct Difference {
+    pub high: f64,
+    pub low: f64,
 }
 
 fn differences(step: Step) -> [Difference; 2] {
@@ -94,7 +94,7 @@ fn differences(step: Step) -> [Difference; 2] {
 }
 
 /// Knuth's two-sum, with a minus (D. E. Knuth, The Art of Computer Programming 2, 4.2.2). Exact for non-negative finite values.
-fn difference(a: f64, b: f64) -> Difference {
+pub(crate) fn difference(a: f64, b: f64) -> Difference {
     let high = a - b;
     let b_virtual = a - high;
     let a_virtual = high + b_virtual;
@@ -116,9 +116,6 @@ fn compare_products(a: f64, b: f64, c: f64, d: f64) -> Ordering {
     top(m, e).cmp(&top(n, f)).then((m << m.leading_zeros()).cmp(&(n << n.leading_zeros())))
 }
 
-/// Products of differences span 2^-2148 … 2^2049: 4 200 bits and some carries.
-type WideProduct = Wide<68>;
-
 /// Compares `a·b` with `c·d` through the eight partial products.
 fn compare_in_full(a: Difference, b: Difference, c: Difference, d: Difference) -> Ordering {
     let mut sum = WideProduct::ZERO;
@@ -131,12 +128,15 @@ fn compare_in_full(a: Difference, b: Difference, c: Difference, d: Difference) -
     sum.sign()
 }
 
+<<<<<<< HEAD
 fn add_product(sum: WideProduct, x: f64, y: f64) -> WideProduct {
     let ((m, e), (n, f)) = (decompose(x.abs()), decompose(y.abs()));
     let product = WideProduct::shifted(u128::from(m) * u128::from(n), (e + f - 2 * LOWEST_UNIT) as u32);
     if (x < 0.0) == (y < 0.0) { sum + product } else { sum - product }
 }
 
+=======
+>>>>>>> knap
 #[cfg(test)]
 mod tests {
     use super::*;

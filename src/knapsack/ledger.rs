@@ -33,6 +33,15 @@ pub(crate) struct Totals<T> {
     pub benefit: T,
 }
 
+/// A bound on every choice's benefit, rounded up.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum UpperBound {
+    /// Known to be met: no choice reports more than the one at hand.
+    Met(f64),
+    /// Met only if the reported benefit reaches it.
+    Open(f64),
+}
+
 /// An instance seen through integers of type `T`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ledger<'a, T> {
@@ -75,18 +84,19 @@ impl<'a, T: Number> Ledger<'a, T> {
         })
     }
 
-    /// A feasible solution. `upper_bound` is rounded up; `None` says that the totals meet it exactly.
-    pub fn solution(
-        &self,
-        choice: Vec<u32>,
-        totals: Totals<T>,
-        upper_bound: Option<f64>,
-        lambda: f64,
-    ) -> Solution {
+    /// A feasible solution; `upper_bound` is rounded up.
+    pub fn solution(&self, choice: Vec<u32>, totals: Totals<T>, lambda: f64, bound: UpperBound) -> Solution {
         let benefit = totals.benefit.to_f64(self.benefit_unit);
         let reached = totals.benefit.to_f64_up(self.benefit_unit);
+<<<<<<< HEAD
         let upper_bound = upper_bound.map_or(reached, |bound| bound.max(reached));
         let optimal = upper_bound <= reached;
+=======
+        let (upper_bound, optimal) = match bound {
+            UpperBound::Met(bound) => (bound.max(reached), true),
+            UpperBound::Open(bound) => (bound.max(reached), bound <= benefit),
+        };
+>>>>>>> knap
         let gap = if optimal { 0.0 } else { (upper_bound - benefit) / upper_bound };
         Solution {
             choice,
