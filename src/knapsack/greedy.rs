@@ -42,9 +42,6 @@ fn solve<T: Number>(ledger: &Ledger<'_, T>) -> Solution {
     forced.switch(critical.step.class, critical.step.to);
     forced.walk(&steps);
     let better = if forced.totals.benefit > filled.totals.benefit { forced } else { filled };
-<<<<<<< HEAD
-    ledger.solution(better.choice, better.totals, critical.linear_bound(ledger), critical.slope(ledger))
-=======
     let (slope, bound) = (critical.slope(ledger), critical.linear_bound(ledger));
     ledger.solution(better.choice, better.totals, slope, bound)
 }
@@ -70,7 +67,6 @@ pub(crate) fn relax<T: Number>(ledger: &Ledger<'_, T>) -> Option<Relaxation> {
         attempt.switch(step.class, step.to);
     }
     Some(Relaxation { choice: attempt.choice, lambda: 0.0 })
->>>>>>> knap
 }
 
 /// A step from one item of a class's hull to the next.

@@ -128,15 +128,6 @@ fn compare_in_full(a: Difference, b: Difference, c: Difference, d: Difference) -
     sum.sign()
 }
 
-<<<<<<< HEAD
-fn add_product(sum: WideProduct, x: f64, y: f64) -> WideProduct {
-    let ((m, e), (n, f)) = (decompose(x.abs()), decompose(y.abs()));
-    let product = WideProduct::shifted(u128::from(m) * u128::from(n), (e + f - 2 * LOWEST_UNIT) as u32);
-    if (x < 0.0) == (y < 0.0) { sum + product } else { sum - product }
-}
-
-=======
->>>>>>> knap
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -88,15 +88,10 @@ impl<'a, T: Number> Ledger<'a, T> {
     pub fn solution(&self, choice: Vec<u32>, totals: Totals<T>, lambda: f64, bound: UpperBound) -> Solution {
         let benefit = totals.benefit.to_f64(self.benefit_unit);
         let reached = totals.benefit.to_f64_up(self.benefit_unit);
-<<<<<<< HEAD
-        let upper_bound = upper_bound.map_or(reached, |bound| bound.max(reached));
-        let optimal = upper_bound <= reached;
-=======
         let (upper_bound, optimal) = match bound {
             UpperBound::Met(bound) => (bound.max(reached), true),
             UpperBound::Open(bound) => (bound.max(reached), bound <= benefit),
         };
->>>>>>> knap
         let gap = if optimal { 0.0 } else { (upper_bound - benefit) / upper_bound };
         Solution {
             choice,
