@@ -287,6 +287,7 @@ impl Replay {
         self.dense_levels(runtime, objects)?;
         self.in_view(&frame, input.views)?;
         self.allowed_levels(&frame)?;
+        in_memory(runtime, &frame)?;
         self.fade_reserve(runtime, &frame)?;
         counts(runtime, objects, input)?;
         selection(&frame, runtime.wanted(), &runtime.report().select, promise)
@@ -319,12 +320,6 @@ impl Replay {
             for (slot, shown) in runtime.shown_slots(group) {
                 let at = (group, objects.id_of(slot).unwrap_or_default());
                 self.one_transition(at, shown)?;
-                let table = objects.get(at.1).map_or(0, |o| usize::from(o.table.0));
-                let levels = objects.tables()[table].levels().len();
-                let exists = |l: Level| !l.is_drawn() || l.index() < levels;
-                hold_of(at, exists(shown.level) && exists(shown.from), "what is shown exists", || {
-                    format!("{} from {} of {levels} levels", shown.level, shown.from)
-                })?;
                 if shown.level.is_drawn() {
                     let twice = dense.insert(at, shown.level);
                     hold_of(at, twice.is_none(), "each object is shown once per group", || "twice".into())?;
@@ -392,7 +387,7 @@ impl Replay {
             let settings = frame.objects.settings(frame.candidates.slot[i] as usize);
             let levels = frame.rates.levels(frame.candidates.table[i]).len();
             let mut allowed = settings.allowed(levels);
-            if settings.may_skip && settings.forced.is_none() {
+            if settings.may_skip && settings.forced.is_none() && allowed.coarsest.index() + 1 == levels {
                 allowed.coarsest = Level::NOT_DRAWN;
             }
             let given = frame.candidates.allowed[i];
@@ -423,6 +418,21 @@ impl Replay {
             format!("{fades_us} µs of {limit_us} µs")
         })
     }
+}
+
+/// Nothing is shown that is not in memory, not even on its way out.
+fn in_memory(runtime: &Runtime, frame: &Frame<'_>) -> Result<(), Violation> {
+    for i in 0..frame.candidates.len() {
+        let (group, id) = who(frame, i);
+        let levels = frame.rates.levels(frame.candidates.table[i]).len();
+        let resident = frame.objects.settings(frame.candidates.slot[i] as usize).showable(levels);
+        let shown = runtime.shown(frame.objects, group, id);
+        let may = |l: Level| !l.is_drawn() || resident.contains(l);
+        hold_of((group, id), may(shown.level) && may(shown.from), "what is shown is in memory", || {
+            format!("{} from {} where {resident:?} is", shown.level, shown.from)
+        })?;
+    }
+    Ok(())
 }
 
 /// The views that can be used.

@@ -71,7 +71,8 @@ pub struct Settings {
     pub forced: Option<Level>,
     /// Levels that are in memory.
     pub resident: LevelRange,
-    /// Whether the selection may leave the object out where its benefit is not worth its cost.
+    /// Whether the selection may leave the object out where its benefit is not worth its cost. It stays in where the
+    /// coarsest level of its table is ruled out: what must not be coarser must not be missing.
     pub may_skip: bool,
     /// The object is not drawn beyond this distance from the eye.
     pub draw_distance: f32,
@@ -106,12 +107,17 @@ impl Default for Settings {
 impl Settings {
     /// The levels of a table of `levels` levels that may be shown: resident goes before forced, forced before clamp.
     pub fn allowed(&self, levels: usize) -> LevelRange {
-        let table = LevelRange { finest: Level::FINEST, coarsest: Level((levels - 1) as u8) };
-        let resident = table.narrowed(self.resident);
+        let resident = self.showable(levels);
         match self.forced {
             Some(level) => resident.narrowed(LevelRange { finest: level, coarsest: level }),
             None => resident.narrowed(self.clamp),
         }
+    }
+
+    /// The levels of a table of `levels` levels that are in memory, or the one nearest to them.
+    pub fn showable(&self, levels: usize) -> LevelRange {
+        let table = LevelRange { finest: Level::FINEST, coarsest: Level((levels - 1) as u8) };
+        table.narrowed(self.resident)
     }
 
     fn broken_rule(&self) -> Option<&'static str> {

@@ -22,11 +22,62 @@ struct Trial {
     /// Frames that measurements come late by, and how much slower the machine is than predicted.
     late: u64,
     ratio: f64,
+    /// What the world does to an object before each frame.
+    edits: Vec<(prop::sample::Index, Edit)>,
+}
+
+#[derive(Clone, Debug)]
+enum Edit {
+    None,
+    Remove,
+    /// Takes it out and puts it back, in another slot perhaps.
+    Reinsert,
+    /// As its neighbour in the scene.
+    Become(prop::sample::Index),
+}
+
+fn edit() -> impl Strategy<Value = Edit> {
+    prop_oneof![
+        2 => Just(Edit::None),
+        1 => Just(Edit::Remove),
+        1 => Just(Edit::Reinsert),
+        6 => any::<prop::sample::Index>().prop_map(Edit::Become),
+    ]
+}
+
+impl Edit {
+    fn apply(&self, scene: &Scene, object: usize, objects: &mut Objects) {
+        let old = scene.objects[object];
+        match self {
+            Self::None => {}
+            Self::Remove => drop(objects.remove(old.id)),
+            Self::Reinsert => {
+                objects.remove(old.id);
+                objects.insert(old).expect("a good object");
+            }
+            Self::Become(other) if objects.get(old.id).is_some() => {
+                let other = scene.objects[other.index(scene.objects.len())];
+                objects.set_table(old.id, other.table).expect("a good table");
+                objects.set_settings(old.id, other.settings).expect("good settings");
+                objects.set_bounds(old.id, other.bounds).expect("a known object");
+            }
+            Self::Become(_) => {}
+        }
+    }
 }
 
 fn trial() -> impl Strategy<Value = Trial> {
-    (scenes::scene(), film(1..7), options(), budget(), 0u64..4, 0.6f64..1.6).prop_map(
-        |(scene, film, options, budget, late, ratio)| Trial { scene, film, options, budget, late, ratio },
+    let edits = prop::collection::vec((any::<prop::sample::Index>(), edit()), 0..12);
+    (scenes::scene(), film(1..7), options(), budget(), (0u64..4, 0.6f64..1.6), edits).prop_map(
+        |(scene, film, options, budget, (late, ratio), edits)| Trial {
+            scene,
+            film,
+            options,
+            budget,
+            late,
+            ratio,
+            edits,
+        },
     )
 }
 
@@ -75,6 +126,11 @@ impl Trial {
     ) -> Result<(), TestCaseError> {
         let mut predicted_us = Vec::new();
         for (n, cameras) in film.iter().enumerate() {
+            for (object, edit) in self.edits.iter().skip(n * 2).take(2) {
+                if n > 0 && !self.scene.objects.is_empty() {
+                    edit.apply(&self.scene, object.index(self.scene.objects.len()), objects);
+                }
+            }
             let views = inputs(cameras);
             let measured = measured(n as u64 + 1, &predicted_us, self.late, self.ratio);
             let input = FrameInput { measured: &measured, ..FrameInput::new(&views, budget_us) };
@@ -154,7 +210,7 @@ proptest! {
             let too = trial.records(&mut twin, &mut twins, None);
             prop_assert_eq!(on, too, "{:?}", policy);
             runtime.reset();
-            let again = trial.records(&mut runtime, &mut objects, None);
+            let again = trial.records(&mut runtime, &mut trial.scene.store(), None);
             prop_assert_eq!(first, again, "{:?}", policy);
         }
     }

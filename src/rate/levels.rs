@@ -47,6 +47,11 @@ impl TableRates {
         &self.levels[start..self.ends[table]]
     }
 
+    /// The coarsest level of a table.
+    pub fn coarsest(&self, table: u16) -> Level {
+        Level((self.levels(table).len() - 1) as u8)
+    }
+
     /// How many tables there are.
     pub fn tables(&self) -> usize {
         self.ends.len()

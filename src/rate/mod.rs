@@ -174,7 +174,8 @@ fn push_rows(
 /// What the settings of a special object change. Its bias is in the weight already.
 fn heed(candidate: &mut Candidate, settings: &Settings, levels: usize) {
     candidate.allowed = settings.allowed(levels);
-    if settings.may_skip && settings.forced.is_none() {
+    let unclamped = candidate.allowed.coarsest.index() + 1 == levels;
+    if settings.may_skip && settings.forced.is_none() && unclamped {
         candidate.allowed.coarsest = Level::NOT_DRAWN;
     }
     candidate.cost_scale *= settings.cost_multiplier;

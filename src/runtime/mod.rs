@@ -216,10 +216,14 @@ impl Runtime {
         }
     }
 
-    /// Forgets everything learnt and shown, as if no frame had been run; the next changes start from nothing.
+    /// Forgets everything learnt and shown, as if no frame had been run; the next changes start from nothing. The next
+    /// frame may be of other objects.
     pub fn reset(&mut self) {
         self.selector.reset();
         self.feedback.reset(self.options.cost);
+        self.tree = BlockTree::default();
+        self.rated = None;
+        self.layout = Layout::default();
         self.groups.clear();
         self.clock_ms = 0.0;
         self.report = FrameReport::default();
@@ -298,7 +302,9 @@ impl Runtime {
             let dt_ms = memory.begin_frame(self.layout.slots(), self.clock_ms);
             for i in candidates.range(group) {
                 let Some(state) = memory.recall(candidates.slot[i]) else { continue };
-                candidates.previous[i] = Some(state.wanted);
+                let coarsest = self.rates.coarsest(candidates.table[i]);
+                let wanted = if state.wanted.is_drawn() { state.wanted.min(coarsest) } else { state.wanted };
+                candidates.previous[i] = Some(wanted);
                 candidates.age_ms[i] = (self.clock_ms - state.since_ms) as u32;
                 if state.shown.is_in_flight() {
                     state.shown = state.shown.advanced(dt_ms as f32, &self.options.transition);
@@ -347,8 +353,8 @@ impl Runtime {
         self.changes.sort_unstable_by_key(|c| (c.group, c.object));
     }
 
-    /// Remembers what is wanted of every candidate of a group; shows at once what has come into view, and notes the
-    /// candidates that are to change.
+    /// Remembers what is wanted of every candidate of a group; shows at once what has come into view and what is shown
+    /// at a level that is gone, and notes the candidates that are to change.
     fn note_wanted(&mut self, objects: &Objects, group: GroupId) {
         self.scratch.requests.clear();
         for i in self.scratch.candidates.range(group) {
@@ -364,11 +370,31 @@ impl Runtime {
                 }
                 Some(previous) => {
                     self.report.switches += usize::from(previous != wanted);
-                    if memory.want(slot, wanted) {
-                        self.scratch.requests.push(i);
+                    let shown = memory.state(slot).shown;
+                    if memory.want(slot, wanted) || shown.is_in_flight() {
+                        self.ask(objects, i, shown);
                     }
                 }
             }
+        }
+    }
+
+    /// Asks for a transition of candidate `i` to what is wanted. Where a level that is `shown` is no longer in its table
+    /// or in memory there can be none: it switches hard.
+    fn ask(&mut self, objects: &Objects, i: usize, shown: Shown) {
+        let Candidates { slot, table, .. } = &self.scratch.candidates;
+        let levels = self.rates.levels(table[i]).len();
+        let showable = objects.settings(slot[i] as usize).showable(levels);
+        let gone = |l: Level| l.is_drawn() && !showable.contains(l);
+        let (slot, wanted) = (slot[i], self.scratch.levels[i]);
+        if !gone(shown.level) && !gone(shown.from) {
+            self.scratch.requests.extend((shown.level != wanted).then_some(i));
+            return;
+        }
+        let group = self.scratch.candidates.group_of(i);
+        memory::of_group(&mut self.groups, group).state(slot).shown = Shown::steady(wanted);
+        if shown.level != wanted {
+            self.push_change(objects, i, shown.level, Shown::steady(wanted));
         }
     }
 
