@@ -505,3 +505,9 @@ fn nothing_is_allocated_once_warm() {
     assert_eq!(counted, 0);
     assert!(ALLOCATIONS.get() > 0, "the counter counts");
 }
+
+#[test]
+fn a_bridge_can_move_to_another_thread() {
+    fn is_send<T: Send>(_: &T) {}
+    is_send(&Bridge::new());
+}
