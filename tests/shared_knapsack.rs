@@ -153,7 +153,7 @@ impl<'a> Textbook<'a> {
 
     /// Benefit with switching priced in: what is held counts more, what lies beyond less.
     fn priced(&self, positions: &[usize]) -> f64 {
-        let mut sum = FixedSum::default();
+        let mut sum = 0.0;
         for (i, &position) in positions.iter().enumerate() {
             let value = |p: usize| f64::from(self.hulls[i][p].value);
             let stay = f64::from(self.classes[i].stay);
@@ -161,40 +161,48 @@ impl<'a> Textbook<'a> {
                 value(position.min(usize::from(self.current[i])).min(self.hulls[i].len() - 1)) - value(0);
             let beyond = value(position) - value(0) - held;
             let priced = value(0) + (1.0 + stay) * held + (1.0 - stay) * beyond;
-            sum.add(f64::from(self.classes[i].weight) * priced);
+            sum += f64::from(self.classes[i].weight) * priced;
         }
-        sum.value()
+        sum
     }
 
     fn items(&self, positions: &[usize]) -> Vec<u8> {
         positions.iter().zip(&self.hulls).map(|(&p, hull)| hull[p].item).collect()
     }
 
-    /// The items of the answer that the solver must give, if the gap that it certifies is the right one.
-    fn answer(&self, budget: u64, outcome: &Outcome) -> Vec<u8> {
+    /// The answers that the solver may give, if the gap that it certifies is the right one: two where the greedy and its
+    /// rival are worth the same.
+    fn answers(&self, budget: u64, outcome: &Outcome) -> Vec<Vec<u8>> {
         let tops: Vec<Position> = self.classes.iter().flat_map(|c| hull(&c.items).last().copied()).collect();
         if self.classes.iter().zip(&tops).map(|(c, top)| c.cost(top.ticks)).sum::<u64>() <= budget {
-            return tops.iter().map(|top| top.item).collect();
+            return vec![tops.iter().map(|top| top.item).collect()];
         }
         let plain = self.greedy(budget, None);
         let value = self.priced(&plain.positions);
         let gap = (outcome.priced_bound - value) / (outcome.priced_bound - outcome.minimum_benefit);
-        match plain.critical {
-            Some(critical) if gap > 1e-3 => {
-                let rival = self.greedy(budget, Some(critical));
-                let better = self.priced(&rival.positions) > value;
-                self.items(if better { &rival.positions } else { &plain.positions })
+        let mut answers = vec![self.items(&plain.positions)];
+        if let Some(critical) = plain.critical.filter(|_| gap > 1e-3 * (1.0 - TIE)) {
+            let rival = self.greedy(budget, Some(critical));
+            let lead = self.priced(&rival.positions) - value;
+            if lead > TIE * value && gap > 1e-3 * (1.0 + TIE) {
+                answers.clear();
             }
-            _ => self.items(&plain.positions),
+            if lead > -TIE * value {
+                answers.push(self.items(&rival.positions));
+            }
         }
+        answers
     }
 }
+
+/// What rounding can make of a difference, relatively.
+const TIE: f64 = 1e-9;
 
 /// The solver's answer is the textbook's.
 fn agrees(solver: &mut SharedKnapsack, classes: &[Class], budget: u64) -> Result<(), TestCaseError> {
     let outcome = solve(solver, classes, budget);
     match Textbook::new(classes, budget) {
-        Some(book) => prop_assert_eq!(&solver.chosen, &book.answer(budget, &outcome)),
+        Some(book) => prop_assert!(book.answers(budget, &outcome).contains(&solver.chosen)),
         None => {
             let cheapest: Vec<u8> = classes.iter().map(|c| c.cheapest().item).collect();
             prop_assert_eq!(&solver.chosen, &cheapest);
@@ -257,7 +265,7 @@ fn share_of(classes: &[Class], share: f64) -> u64 {
 }
 
 /// Below this budget the fill goes on to the last tick: there is no difference from the textbook left.
-const SMALL: u64 = 1 << 17;
+const SMALL: u64 = 1 << 15;
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1000, ..ProptestConfig::default() })]
@@ -313,12 +321,11 @@ proptest! {
         let mut solver = SharedKnapsack::default();
         let outcome = solve(&mut solver, &fine, budget);
         let book = Textbook::new(&fine, budget).expect("no share is below the cheapest choice");
-        let expected = book.answer(budget, &outcome);
-        if budget - outcome.cost > budget >> 17 {
-            prop_assert_eq!(&solver.chosen, &expected);
+        if budget - outcome.cost > budget >> 15 {
+            prop_assert!(book.answers(budget, &outcome).contains(&solver.chosen));
         }
         let taken = book.greedy(budget, None);
-        let crumbs = f64::from(taken.lambda) * (budget >> 17) as f64;
+        let crumbs = f64::from(taken.lambda) * (budget >> 15) as f64;
         let slack = 1e-6 * outcome.priced_benefit + 1e-6;
         prop_assert!(outcome.priced_benefit >= book.priced(&taken.positions) - crumbs - slack);
     }

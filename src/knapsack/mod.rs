@@ -46,7 +46,6 @@ mod instance;
 #[cfg(feature = "files")]
 mod json;
 mod ledger;
-mod profiles;
 mod shared;
 mod solution;
 mod sum;
@@ -57,7 +56,6 @@ pub use hull::{Step, compare_slopes, upper_hull, upper_hull_of};
 pub use instance::{Instance, InstanceError, Item};
 #[cfg(feature = "files")]
 pub use json::InstanceFileError;
-pub use profiles::{Position, ProfileItem, Profiles};
-pub use shared::{Classes, Outcome, SharedKnapsack};
+pub use shared::{Classes, Outcome, Position, ProfileItem, Profiles, SharedKnapsack};
 pub use solution::Solution;
 pub use sum::FixedSum;

@@ -3,8 +3,7 @@
 //! Where every item of a class is worth `weight · value` and costs `scale · ticks`, with values and ticks from a small
 //! set of *profiles*, the hull of the class is the hull of its profile whatever weight and scale are. It is made once.
 
-use super::hull::upper_hull;
-use super::instance::Item;
+use crate::knapsack::{Item, upper_hull};
 
 /// One vertex of a profile's hull.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,14 +14,19 @@ pub struct Position {
     pub value: f32,
     /// Cost at this position, for a class of scale 1.
     pub ticks: u64,
+    /// The value in fixed point, with [`FRACTION_BITS`] binary digits after the point.
+    pub(super) worth: u64,
     /// The caller's code of the item.
     pub item: u8,
 }
 
+/// Binary digits after the point of weights and values in exact sums.
+pub(super) const FRACTION_BITS: u32 = 32;
+
 /// One item that a profile is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileItem {
-    /// Value for a class of weight 1, ≥ 0.
+    /// Value for a class of weight 1, from 0 to 1.
     pub value: f32,
     /// Cost for a class of scale 1.
     pub ticks: u64,
@@ -33,7 +37,7 @@ pub struct ProfileItem {
 /// A set of profiles, by number.
 #[derive(Clone, Debug, Default)]
 pub struct Profiles {
-    ends: Vec<Ends>,
+    spans: Vec<Span>,
     positions: Vec<Position>,
     items: Vec<ProfileItem>,
     /// Per item, the costliest position that costs no more than it.
@@ -42,31 +46,31 @@ pub struct Profiles {
     hull: Vec<u32>,
 }
 
-/// Where a profile ends in each of the columns; it starts where the one before ends.
+/// Where a profile lies in each of the columns.
 #[derive(Clone, Copy, Debug, Default)]
-struct Ends {
-    positions: usize,
-    items: usize,
+struct Span {
+    positions: (u32, u32),
+    items: (u32, u32),
 }
 
 impl Profiles {
     /// Forgets all profiles from number `keep` on, and keeps the memory.
     pub fn truncate(&mut self, keep: usize) {
-        self.ends.truncate(keep);
-        let Ends { positions, items } = self.ends.last().copied().unwrap_or_default();
-        self.positions.truncate(positions);
-        self.items.truncate(items);
-        self.held.truncate(items);
+        self.spans.truncate(keep);
+        let end = self.spans.last().copied().unwrap_or_default();
+        self.positions.truncate(end.positions.1 as usize);
+        self.items.truncate(end.items.1 as usize);
+        self.held.truncate(end.items.1 as usize);
     }
 
     /// How many profiles there are.
     pub fn len(&self) -> usize {
-        self.ends.len()
+        self.spans.len()
     }
 
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.ends.is_empty()
+        self.spans.is_empty()
     }
 
     /// Adds the profile of these items, of which there must be one at least, and returns its number.
@@ -75,26 +79,31 @@ impl Profiles {
         self.points.clear();
         self.points.extend(items.iter().map(point));
         upper_hull(&self.points, &mut self.hull);
+        let first = (self.positions.len(), self.items.len());
         for (at, &i) in self.hull.iter().enumerate() {
             let next = self.hull.get(at + 1).map(|&n| items[n as usize]);
             self.positions.push(position(items[i as usize], next));
         }
-        let start = self.ends.last().copied().unwrap_or_default().positions;
-        let positions = &self.positions[start..];
+        let positions = &self.positions[first.0..];
         self.held.extend(items.iter().map(|item| position_at(positions, item.ticks)));
         self.items.extend_from_slice(items);
-        self.ends.push(Ends { positions: self.positions.len(), items: self.items.len() });
-        (self.ends.len() - 1) as u32
+        self.spans.push(Span {
+            positions: (first.0 as u32, self.positions.len() as u32),
+            items: (first.1 as u32, self.items.len() as u32),
+        });
+        (self.spans.len() - 1) as u32
     }
 
     /// The hull of a profile, cheapest position first; never empty.
     pub fn positions(&self, profile: u32) -> &[Position] {
-        &self.positions[self.start(profile).positions..self.ends[profile as usize].positions]
+        let (start, end) = self.spans[profile as usize].positions;
+        &self.positions[start as usize..end as usize]
     }
 
     /// The items that a profile was made of, in the order they were given.
     pub fn items(&self, profile: u32) -> &[ProfileItem] {
-        &self.items[self.start(profile).items..self.ends[profile as usize].items]
+        let (start, end) = self.spans[profile as usize].items;
+        &self.items[start as usize..end as usize]
     }
 
     /// The position that holds `item`, or else the costliest one that costs no more than it; the cheapest for an item
@@ -104,11 +113,7 @@ impl Profiles {
         let is_it = |i: &ProfileItem| i.item == item;
         let guess = usize::from(item.wrapping_sub(items.first().map_or(0, |i| i.item)));
         let at = if items.get(guess).is_some_and(is_it) { Some(guess) } else { items.iter().position(is_it) };
-        at.map_or(0, |at| self.held[self.start(profile).items + at])
-    }
-
-    fn start(&self, profile: u32) -> Ends {
-        (profile as usize).checked_sub(1).map_or(Ends::default(), |before| self.ends[before])
+        at.map_or(0, |at| self.held[self.spans[profile as usize].items.0 as usize + at])
     }
 }
 
@@ -120,6 +125,7 @@ pub(super) fn position_at(positions: &[Position], ticks: u64) -> u8 {
 fn position(item: ProfileItem, next: Option<ProfileItem>) -> Position {
     let slope = |n: ProfileItem| (f64::from(n.value) - f64::from(item.value)) / (n.ticks - item.ticks) as f64;
     Position {
+        worth: (f64::from(item.value) * (1u64 << FRACTION_BITS) as f64) as u64,
         next_slope: next.map_or(0.0, |n| slope(n) as f32),
         value: item.value,
         ticks: item.ticks,

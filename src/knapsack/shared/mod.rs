@@ -10,8 +10,16 @@
 //! beyond it (1 − stay) times. That keeps slopes falling along each hull, so the greedy and its bound hold for the
 //! priced objective; the certificate of the plain one is computed beside it.
 
-use super::profiles::{Position, ProfileItem, Profiles, position_at};
-use super::sum::FixedSum;
+mod certificate;
+mod class;
+mod profiles;
+
+pub use certificate::Outcome;
+pub use profiles::{Position, ProfileItem, Profiles};
+
+use certificate::Sums;
+use class::{Class, scaled};
+use profiles::position_at;
 
 /// The classes of one call, column by column.
 #[derive(Clone, Debug, Default)]
@@ -47,29 +55,6 @@ impl Classes {
     pub fn is_empty(&self) -> bool {
         self.profile.is_empty()
     }
-}
-
-/// How good a choice is. Costs are in ticks.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Outcome {
-    /// Cost of the choice.
-    pub cost: u64,
-    /// By how much the cheapest choice exceeds the budget; 0 when it fits.
-    pub shortfall: u64,
-    /// Benefit of the choice.
-    pub benefit: f64,
-    /// Benefit of the cheapest choice.
-    pub minimum_benefit: f64,
-    /// No choice within the budget has more benefit.
-    pub upper_bound: f64,
-    /// Benefit of the choice with switching priced in.
-    pub priced_benefit: f64,
-    /// No choice within the budget has more priced benefit.
-    pub priced_bound: f64,
-    /// Benefit per tick where the budget ends; 0 when everything fits.
-    pub lambda: f64,
-    /// Steps that were compared one by one.
-    pub steps: usize,
 }
 
 /// Solver with its scratch and the memory of the last λ. Fill `profiles` and `classes`, call
@@ -156,7 +141,7 @@ const BUCKET_SHIFT: u32 = 31 - 12;
 const FILL_WINDOWS: [f32; 8] = [0.95, 0.8, 0.5, 0.2, 0.05, 0.01, 0.001, 0.0];
 
 /// The fill stops when less than this fraction of the budget is left: it would buy less than looking costs.
-const FILL_ENOUGH: u64 = 1 << 17;
+const FILL_ENOUGH: u64 = 1 << 15;
 
 /// Above this relative gap the rival choice, critical step first, is tried as well.
 const RIVAL_GAP: f64 = 1e-3;
@@ -180,10 +165,6 @@ impl SharedKnapsack {
         self.choice.clear();
         self.choice.resize(self.classes.len(), 0);
         let outcome = self.choose(budget, ease.min(budget), &key);
-        self.chosen.clear();
-        for i in 0..self.classes.len() {
-            self.chosen.push(self.class(i).positions[usize::from(self.choice[i])].item);
-        }
         self.profiles.truncate(shared);
         outcome
     }
@@ -198,12 +179,12 @@ impl SharedKnapsack {
         if survey.cheapest > budget {
             self.choice.fill(0);
             let shortfall = survey.cheapest - budget;
-            return Outcome { shortfall, ..self.certify(budget, 0.0) };
+            return Outcome { shortfall, ..self.certify(0.0).outcome(budget) };
         }
         let target = survey.held.clamp(ease, budget);
         if survey.best <= target {
             self.take_all();
-            return self.certify(budget, 0.0);
+            return self.certify(0.0).outcome(budget);
         }
         if survey.widest > target - survey.cheapest {
             self.drop_unaffordable(target - survey.cheapest);
@@ -211,10 +192,12 @@ impl SharedKnapsack {
         }
         let critical = self.greedy(survey, target, None, key);
         self.bracket.lambda = critical.lambda;
-        let outcome = Outcome { steps: critical.steps, ..self.certify(budget, critical.lambda) };
-        let attainable = self.certify(target, critical.lambda);
+        let sums = self.certify(critical.lambda);
+        let outcome = Outcome { steps: critical.steps, ..sums.outcome(budget) };
         match critical.step {
-            Some(step) if attainable.priced_gap() > RIVAL_GAP => self.better_of(outcome, step, target, key),
+            Some(step) if sums.outcome(target).priced_gap() > RIVAL_GAP => {
+                self.better_of(outcome, step, target, key)
+            }
             _ => outcome,
         }
     }
@@ -243,8 +226,8 @@ impl SharedKnapsack {
             let (above, down_to) = match pin.filter(|p| p.class == i) {
                 Some(pin) => (pin.position, pin.position),
                 None => {
-                    let above = class.walk(0, high);
-                    (above, class.walk(above, low))
+                    let above = class.reach(class.held(), high);
+                    (above, class.reach(above, low))
                 }
             };
             self.choice[i] = above;
@@ -255,7 +238,7 @@ impl SharedKnapsack {
             survey.cheapest = survey.cheapest.saturating_add(cheapest);
             survey.best = survey.best.saturating_add(best);
             survey.widest = survey.widest.max(best - cheapest);
-            survey.held = survey.held.saturating_add(class.cost(class.current.min(class.last())));
+            survey.held = survey.held.saturating_add(class.cost(class.held()));
             survey.above = survey.above.saturating_add(class.cost(above));
             survey.down_to = survey.down_to.saturating_add(class.cost(down_to));
         }
@@ -278,7 +261,7 @@ impl SharedKnapsack {
             }
             let limit = class.cost(0).saturating_add(room);
             let scale = class.scale;
-            let held = class.positions[usize::from(self.classes.current[i].min(class.last()))].ticks;
+            let held = class.positions[usize::from(class.held())].ticks;
             self.affordable.clear();
             let items = self.profiles.items(self.classes.profile[i]).iter();
             self.affordable.extend(items.filter(|item| scaled(item.ticks, scale) <= limit));
@@ -426,171 +409,28 @@ impl SharedKnapsack {
         self.rival.clone_from(&self.choice);
         let survey = self.survey([f32::MAX; 2], Some(step));
         let critical = self.greedy(survey, budget, Some(step), key);
-        let rival = self.certify(budget, critical.lambda);
+        let rival = self.certify(critical.lambda).outcome(budget);
         let steps = found.steps + critical.steps;
         if rival.priced_benefit > found.priced_benefit {
             let Outcome { upper_bound, priced_bound, lambda, .. } = found;
             return Outcome { upper_bound, priced_bound, lambda, steps, ..rival };
         }
         std::mem::swap(&mut self.rival, &mut self.choice);
+        self.certify(critical.lambda);
         Outcome { steps, ..found }
     }
 
-    /// Sums up the choice and bounds every choice within the budget from above: for any λ ≥ 0, Σ max(benefit − λ·cost) +
-    /// λ·budget is no less than the optimum. All in double precision, rounded outwards.
-    fn certify(&self, budget: u64, lambda: f32) -> Outcome {
-        let mut sums = Sums::default();
-        let lambda = f64::from(lambda);
+    /// Notes the items of the choice, and sums up what it comes to and what is possible at λ.
+    fn certify(&mut self, lambda: f32) -> Sums {
+        let heaviest = self.classes.weight.iter().copied().fold(0.0, f32::max);
+        let mut sums = Sums::new(lambda, self.classes.len(), heaviest);
+        self.chosen.resize(self.classes.len(), 0);
         for i in 0..self.classes.len() {
-            sums.add(&self.class(i), self.choice[i], lambda);
+            let class = Class::new(&self.profiles, &self.classes, i);
+            let position = self.choice[i];
+            self.chosen[i] = class.positions[usize::from(position)].item;
+            sums.add(&class, position);
         }
-        sums.outcome(budget, lambda, self.classes.len())
-    }
-}
-
-impl Outcome {
-    /// (bound − benefit) ÷ (bound − benefit of the cheapest choice), of the plain benefit.
-    pub fn gap(&self) -> f64 {
-        relative_gap(self.upper_bound, self.benefit, self.minimum_benefit)
-    }
-
-    /// The same of the priced benefit, which is what the choice maximises.
-    pub fn priced_gap(&self) -> f64 {
-        relative_gap(self.priced_bound, self.priced_benefit, self.minimum_benefit)
-    }
-}
-
-fn relative_gap(bound: f64, benefit: f64, least: f64) -> f64 {
-    let attainable = bound - least;
-    if attainable > 0.0 { ((bound - benefit) / attainable).clamp(0.0, 1.0) } else { 0.0 }
-}
-
-/// One class with its hull at hand.
-struct Class<'a> {
-    positions: &'a [Position],
-    weight: f32,
-    scale: f32,
-    /// Weight per scale: what turns the profile's slopes into the class's.
-    rate: f32,
-    current: u8,
-    stay: f32,
-}
-
-impl<'a> Class<'a> {
-    fn new(profiles: &'a Profiles, classes: &Classes, i: usize) -> Self {
-        let (weight, scale) = (classes.weight[i], classes.scale[i]);
-        Self {
-            positions: profiles.positions(classes.profile[i]),
-            weight,
-            scale,
-            rate: weight / scale,
-            current: classes.current[i],
-            stay: classes.stay[i],
-        }
-    }
-
-    fn last(&self) -> u8 {
-        (self.positions.len() - 1) as u8
-    }
-
-    fn cost(&self, position: u8) -> u64 {
-        scaled(self.positions[usize::from(position)].ticks, self.scale)
-    }
-
-    /// Priced benefit per tick of the step from `position` to the next; 0 at the last.
-    fn slope(&self, position: u8) -> f32 {
-        let price = if position < self.current { 1.0 + self.stay } else { 1.0 - self.stay };
-        self.rate * self.positions[usize::from(position)].next_slope * price
-    }
-
-    /// The position reached from `position` by steps of slope λ or more, λ > 0.
-    fn walk(&self, mut position: u8, lambda: f32) -> u8 {
-        while self.slope(position) >= lambda {
-            position += 1;
-        }
-        position
-    }
-
-    /// Benefit at a position, with switching priced in: what lies up to the current position counts more, what lies
-    /// beyond it less.
-    fn priced(&self, position: u8) -> f64 {
-        let value = |p: u8| f64::from(self.positions[usize::from(p)].value);
-        let held = value(position.min(self.current.min(self.last()))) - value(0);
-        let beyond = value(position) - value(0) - held;
-        let stay = f64::from(self.stay);
-        f64::from(self.weight) * (value(0) + (1.0 + stay) * held + (1.0 - stay) * beyond)
-    }
-
-    fn plain(&self, position: u8) -> f64 {
-        f64::from(self.weight) * f64::from(self.positions[usize::from(position)].value)
-    }
-
-    /// The position that maximises benefit − λ·cost: on a hull, where the first step stops paying.
-    fn best(&self, lambda: f64, benefit: impl Fn(&Self, u8) -> f64) -> u8 {
-        let pays = |p: u8| {
-            let cost = (self.cost(p + 1) - self.cost(p)) as f64;
-            benefit(self, p + 1) - benefit(self, p) >= lambda * cost
-        };
-        (0..self.last()).take_while(|&p| pays(p)).last().map_or(0, |p| p + 1)
-    }
-}
-
-/// Ticks times scale, rounded up, and held to what 64 bits hold: so do all sums of costs, which then are beyond any budget.
-fn scaled(ticks: u64, scale: f32) -> u64 {
-    if scale == 1.0 {
-        return ticks;
-    }
-    let product = ticks as f64 * f64::from(scale);
-    let floor = product as u64;
-    floor.saturating_add(u64::from((floor as f64) < product))
-}
-
-/// The sums behind an [`Outcome`], of any order of classes.
-#[derive(Default)]
-struct Sums {
-    cost: u64,
-    benefit: FixedSum,
-    minimum: FixedSum,
-    priced: FixedSum,
-    bound: FixedSum,
-    bound_cost: u64,
-    priced_bound: FixedSum,
-    priced_bound_cost: u64,
-}
-
-impl Sums {
-    fn add(&mut self, class: &Class<'_>, choice: u8, lambda: f64) {
-        self.cost = self.cost.saturating_add(class.cost(choice));
-        self.benefit.add(class.plain(choice));
-        self.minimum.add(class.plain(0));
-        self.priced.add(class.priced(choice));
-        let best = class.best(lambda, Class::plain);
-        self.bound.add(class.plain(best));
-        self.bound_cost = self.bound_cost.saturating_add(class.cost(best));
-        let best = if class.stay == 0.0 { best } else { class.best(lambda, Class::priced) };
-        self.priced_bound.add(class.priced(best));
-        self.priced_bound_cost = self.priced_bound_cost.saturating_add(class.cost(best));
-    }
-
-    /// Bounds are widened by what rounding can hide: 2⁻³² per term of a sum, two ticks per class for scaled costs, and
-    /// the last places of the products.
-    fn outcome(&self, budget: u64, lambda: f64, classes: usize) -> Outcome {
-        let hidden = classes as f64 * (2.0 * lambda + 1.0 / (1u64 << 32) as f64);
-        let bound = |benefit: FixedSum, cost: u64| {
-            let unspent = lambda * (budget as f64 - cost as f64);
-            let widest = benefit.value().abs() + lambda * (budget as f64 + cost as f64);
-            benefit.value() + unspent + hidden + widest * 1e-14
-        };
-        Outcome {
-            cost: self.cost,
-            shortfall: 0,
-            benefit: self.benefit.value(),
-            minimum_benefit: self.minimum.value(),
-            upper_bound: bound(self.bound, self.bound_cost).max(self.benefit.value()),
-            priced_benefit: self.priced.value(),
-            priced_bound: bound(self.priced_bound, self.priced_bound_cost).max(self.priced.value()),
-            lambda,
-            steps: 0,
-        }
+        sums
     }
 }
