@@ -102,16 +102,37 @@ impl Candidates {
 
     /// Adds a candidate without memory of earlier frames.
     pub fn push(&mut self, c: Candidate) {
-        self.slot.push(c.slot);
-        self.table.push(c.table);
-        self.allowed.push(c.allowed);
-        self.weight.push(c.weight);
-        self.cost_scale.push(c.cost_scale);
-        self.size_px.push(c.size_px);
-        self.near_px.push(c.near_px);
-        self.area_px2.push(c.area_px2);
-        self.previous.push(None);
-        self.age_ms.push(0);
+        let i = self.len();
+        self.grow(1);
+        self.set(i, c);
+    }
+
+    /// Adds so many candidates at the end, whose contents are arbitrary until they are set; none has a memory of earlier
+    /// frames.
+    pub fn grow(&mut self, count: usize) {
+        let len = self.len() + count;
+        self.slot.resize(len, 0);
+        self.table.resize(len, 0);
+        self.allowed.resize(len, LevelRange::ALL);
+        self.weight.resize(len, 0.0);
+        self.cost_scale.resize(len, 1.0);
+        self.size_px.resize(len, 0.0);
+        self.near_px.resize(len, 0.0);
+        self.area_px2.resize(len, 0.0);
+        self.previous.resize(len, None);
+        self.age_ms.resize(len, 0);
+    }
+
+    /// Overwrites candidate `i`, but for its memory of earlier frames.
+    pub fn set(&mut self, i: usize, c: Candidate) {
+        self.slot[i] = c.slot;
+        self.table[i] = c.table;
+        self.allowed[i] = c.allowed;
+        self.weight[i] = c.weight;
+        self.cost_scale[i] = c.cost_scale;
+        self.size_px[i] = c.size_px;
+        self.near_px[i] = c.near_px;
+        self.area_px2[i] = c.area_px2;
     }
 
     /// One candidate, across the columns.

@@ -1,7 +1,7 @@
 //! The frame loop's greedy against slow twins: the textbook's greedy, from scratch, and exhaustive search.
 
 use lod_budget::knapsack::{
-    Classes, FixedSum, Instance, Item, Outcome, Position, ProfileItem, Profiles, SharedKnapsack, exact,
+    Classes, Instance, Item, Outcome, Position, ProfileItem, Profiles, SharedKnapsack, exact,
 };
 use proptest::prelude::*;
 

@@ -22,39 +22,68 @@ pub struct LevelRate {
 /// The rates of all levels of all tables.
 #[derive(Clone, Debug, Default)]
 pub struct TableRates {
-    ends: Vec<usize>,
+    spans: Vec<Span>,
     levels: Vec<LevelRate>,
     revision: u64,
+}
+
+/// Where the levels of a table lie, and its cheapest.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    start: u32,
+    coarsest: Level,
+    cheapest: Level,
 }
 
 impl TableRates {
     /// Prices `tables` anew and keeps the memory. Time: O(levels).
     pub fn renew(&mut self, tables: &[LodTable], model: &CostModel) {
-        self.ends.clear();
+        self.spans.clear();
         self.levels.clear();
         for table in tables {
-            let radius = table.bounds().radius;
+            let (start, radius) = (self.levels.len(), table.bounds().radius);
             self.levels.extend(table.levels().iter().map(|level| rate_of(level, radius, model)));
-            self.ends.push(self.levels.len());
+            let levels = self.levels[start..].iter().enumerate().map(|(i, &rate)| (Level(i as u8), rate));
+            let cheapest = cheapest(levels).unwrap_or(Level::FINEST);
+            self.spans.push(Span { start: start as u32, coarsest: table.coarsest(), cheapest });
         }
         self.revision += 1;
     }
 
     /// The levels of a table, finest first.
     pub fn levels(&self, table: u16) -> &[LevelRate] {
-        let table = usize::from(table);
-        let start = table.checked_sub(1).map_or(0, |before| self.ends[before]);
-        &self.levels[start..self.ends[table]]
+        let Span { start, coarsest, .. } = self.spans[usize::from(table)];
+        &self.levels[start as usize..][..=coarsest.index()]
     }
 
     /// The coarsest level of a table.
     pub fn coarsest(&self, table: u16) -> Level {
-        Level((self.levels(table).len() - 1) as u8)
+        self.spans[usize::from(table)].coarsest
+    }
+
+    /// All levels of a table.
+    pub fn whole(&self, table: u16) -> LevelRange {
+        LevelRange { finest: Level::FINEST, coarsest: self.coarsest(table) }
+    }
+
+    /// The place of a drawn level among the levels of all tables, table by table.
+    pub fn index(&self, table: u16, level: Level) -> usize {
+        self.spans[usize::from(table)].start as usize + level.index()
+    }
+
+    /// How many levels all tables have.
+    pub fn len(&self) -> usize {
+        self.levels.len()
+    }
+
+    /// Whether there is no table.
+    pub fn is_empty(&self) -> bool {
+        self.levels.is_empty()
     }
 
     /// How many tables there are.
     pub fn tables(&self) -> usize {
-        self.ends.len()
+        self.spans.len()
     }
 
     /// Raised whenever the rates are renewed.
@@ -77,14 +106,12 @@ impl TableRates {
     /// otherwise the level of least geometry, the more accurate of equals.
     pub fn minimum(&self, table: u16, range: LevelRange) -> Level {
         if !range.coarsest.is_drawn() {
-            return Level::NOT_DRAWN;
+            Level::NOT_DRAWN
+        } else if range == self.whole(table) {
+            self.spans[usize::from(table)].cheapest
+        } else {
+            self::cheapest(self.drawn(table, range)).unwrap_or(range.coarsest)
         }
-        let cheaper = |(best, b): (Level, LevelRate), (level, l): (Level, LevelRate)| {
-            let wins =
-                l.geometry_us < b.geometry_us || l.geometry_us == b.geometry_us && l.accuracy > b.accuracy;
-            if wins { (level, l) } else { (best, b) }
-        };
-        self.drawn(table, range).reduce(cheaper).map_or(range.coarsest, |(level, _)| level)
     }
 
     /// Geometry time of a level; 0 where nothing is drawn.
@@ -96,6 +123,15 @@ impl TableRates {
     pub fn accuracy(&self, table: u16, level: Level) -> f32 {
         self.levels(table).get(level.index()).map_or(0.0, |l| l.accuracy)
     }
+}
+
+/// The level of least geometry, the more accurate of equals, then the finer.
+fn cheapest(levels: impl Iterator<Item = (Level, LevelRate)>) -> Option<Level> {
+    let cheaper = |(best, b): (Level, LevelRate), (level, l): (Level, LevelRate)| {
+        let wins = l.geometry_us < b.geometry_us || l.geometry_us == b.geometry_us && l.accuracy > b.accuracy;
+        if wins { (level, l) } else { (best, b) }
+    };
+    levels.reduce(cheaper).map(|(level, _)| level)
 }
 
 fn rate_of(level: &LevelRecord, radius: f32, model: &CostModel) -> LevelRate {

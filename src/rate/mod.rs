@@ -147,14 +147,15 @@ fn push_rows(
     model: &BenefitModel,
     candidates: &mut Candidates,
 ) {
-    for lane in lanes(rows.mask) {
+    let first = candidates.len();
+    candidates.grow(rows.mask.count_ones() as usize);
+    for (i, lane) in lanes(rows.mask).enumerate() {
         let slot = index * BLOCK as u32 + lane as u32;
         let table = block.table[lane];
-        let levels = rates.levels(table);
         let mut candidate = Candidate {
             slot,
             table,
-            allowed: LevelRange { finest: Level::FINEST, coarsest: Level((levels.len() - 1) as u8) },
+            allowed: rates.whole(table),
             weight: rows.weight[lane],
             cost_scale: rows.views[lane],
             size_px: rows.size_px[lane],
@@ -162,12 +163,12 @@ fn push_rows(
             area_px2: rows.area_px2[lane],
         };
         if block.special & (1 << lane) != 0 {
-            heed(&mut candidate, objects.settings(slot as usize), levels.len());
+            heed(&mut candidate, objects.settings(slot as usize), rates.levels(table).len());
         }
         if model.enough_px > 0.0 {
-            spare(&mut candidate, levels, model.enough_px);
+            spare(&mut candidate, rates.levels(table), model.enough_px);
         }
-        candidates.push(candidate);
+        candidates.set(first + i, candidate);
     }
 }
 

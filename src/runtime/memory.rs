@@ -94,7 +94,7 @@ impl GroupMemory {
         *state = SlotState { wanted, shown: Shown::steady(wanted), since_ms, ..*state };
     }
 
-    /// Notes what is wanted; whether what is shown has to change for it.
+    /// Notes what is wanted; whether it is not what is shown, and steadily.
     pub fn want(&mut self, slot: u32, wanted: Level) -> bool {
         let clock_ms = self.clock_ms;
         let state = &mut self.states[slot as usize];
@@ -102,7 +102,7 @@ impl GroupMemory {
             state.wanted = wanted;
             state.since_ms = clock_ms;
         }
-        state.shown.level != wanted
+        state.shown.level != wanted || state.shown.is_in_flight()
     }
 
     /// Lists what has left the view since the group's last frame.

@@ -5,6 +5,7 @@
 
 mod explain;
 mod memory;
+mod tally;
 mod visibility;
 
 pub use explain::Explanation;
@@ -17,13 +18,14 @@ use crate::feedback::{Feedback, FeedbackOptions, Prediction};
 use crate::frame::OptionsError;
 use crate::frame::{Candidates, Change, FrameId, FrameReport, FrameTime, GroupId};
 use crate::knapsack::FixedSum;
-use crate::rate::{BenefitModel, CostModel, DRIVERS, Seen, TableRates, cost_us, drivers_of, rate};
+use crate::rate::{BenefitModel, CostModel, Drivers, Seen, TableRates, cost_us, rate};
 use crate::scene::{ObjectId, Objects};
 use crate::select::{Frame, Selector};
 use crate::table::Level;
 use crate::transition::{Shown, TransitionKind, TransitionOptions, follow};
 use crate::view::View;
 use memory::{GroupMemory, Layout};
+use tally::Tally;
 
 /// Options of a [`Runtime`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -125,8 +127,11 @@ struct Scratch {
     cursors: Vec<usize>,
     candidates: Candidates,
     levels: Vec<Level>,
+    /// Candidates that have come into view, or are not shown as they are wanted.
+    news: Vec<usize>,
     /// Candidates whose shown level is not the one that is wanted.
     requests: Vec<usize>,
+    tally: Tally,
 }
 
 impl Runtime {
@@ -356,25 +361,45 @@ impl Runtime {
     /// Remembers what is wanted of every candidate of a group; shows at once what has come into view and what is shown
     /// at a level that is gone, and notes the candidates that are to change.
     fn note_wanted(&mut self, objects: &Objects, group: GroupId) {
+        self.news(group);
+        let news = std::mem::take(&mut self.scratch.news);
         self.scratch.requests.clear();
-        for i in self.scratch.candidates.range(group) {
-            let wanted = self.scratch.levels[i];
-            let slot = self.scratch.candidates.slot[i];
-            let memory = memory::of_group(&mut self.groups, group);
+        for &i in &news {
+            let (slot, wanted) = (self.scratch.candidates.slot[i], self.scratch.levels[i]);
             match self.scratch.candidates.previous[i] {
-                None => {
-                    memory.enter(slot, wanted);
-                    if wanted.is_drawn() {
-                        self.push_change(objects, i, Level::NOT_DRAWN, Shown::steady(wanted));
-                    }
+                Some(_) => {
+                    let shown = memory::of_group(&mut self.groups, group).state(slot).shown;
+                    self.ask(objects, i, shown);
                 }
+                None if wanted.is_drawn() => {
+                    self.push_change(objects, i, Level::NOT_DRAWN, Shown::steady(wanted));
+                }
+                None => {}
+            }
+        }
+        self.scratch.news = news;
+    }
+
+    /// Notes what is wanted of every candidate of a group, and which of them are news: in view for the first time, or
+    /// not shown as they are wanted.
+    fn news(&mut self, group: GroupId) {
+        let Scratch { candidates, levels, news, .. } = &mut self.scratch;
+        let memory = memory::of_group(&mut self.groups, group);
+        news.clear();
+        for i in candidates.range(group) {
+            let (slot, wanted) = (candidates.slot[i], levels[i]);
+            let is_news = match candidates.previous[i] {
                 Some(previous) => {
                     self.report.switches += usize::from(previous != wanted);
-                    let shown = memory.state(slot).shown;
-                    if memory.want(slot, wanted) || shown.is_in_flight() {
-                        self.ask(objects, i, shown);
-                    }
+                    memory.want(slot, wanted)
                 }
+                None => {
+                    memory.enter(slot, wanted);
+                    true
+                }
+            };
+            if is_news {
+                news.push(i);
             }
         }
     }
@@ -445,47 +470,25 @@ impl Runtime {
         self.report.filtered_us = self.feedback.timing().filtered_us;
     }
 
-    /// Counts and model time of everything shown, outgoing levels of transitions included. Sums in fixed point, so that
-    /// the order of slots does not matter.
-    fn tally(&self, objects: &Objects) -> ([f64; DRIVERS], f64) {
-        let candidates = &self.scratch.candidates;
-        let model = self.feedback.model();
-        let mut sums = [FixedSum::default(); DRIVERS];
-        let mut time = FixedSum::default();
+    /// Counts and model time of everything shown, outgoing levels of transitions included.
+    fn tally(&mut self, objects: &Objects) -> (Drivers, f64) {
+        let Scratch { candidates, tally, .. } = &mut self.scratch;
+        let (model, kind) = (self.feedback.model(), self.options.transition.kind);
+        tally.clear(self.rates.len());
         for (group, range) in candidates.groups() {
-            let Some(memory) = self.group(group.group) else { continue };
+            let memory = memory::of_group(&mut self.groups, group.group);
             for i in range {
                 let shown = memory.shown_at(candidates.slot[i]);
-                let table = candidates.table[i];
-                let price = |level| cost_us(model, &self.rates, candidates, i, level);
-                time.add(price(shown.level));
-                time.add(outgoing_us(&self.options.transition, shown, price));
-                for level in drawn_levels(&self.options.transition, shown) {
-                    let record = &objects.tables()[usize::from(table)].levels()[level.index()];
-                    let mut drivers = drivers_of(record).map(|d| d * f64::from(candidates.cost_scale[i]));
-                    drivers[DRIVERS - 1] = f64::from(candidates.area_px2[i]);
-                    sums.iter_mut().zip(drivers).for_each(|(sum, d)| sum.add(d));
-                }
+                tally.add(model, &self.rates, candidates, i, shown, kind);
             }
         }
-        (sums.map(FixedSum::value), time.value())
+        tally.sum(model, objects.tables())
     }
 }
 
 /// What the outgoing level of a transition costs; 0 when none is in flight.
 fn outgoing_us(options: &TransitionOptions, shown: Shown, price: impl Fn(Level) -> f64) -> f64 {
     if shown.is_in_flight() { options.outgoing_us(price(shown.from), price(shown.level)) } else { 0.0 }
-}
-
-/// The levels whose meshes are drawn: both of a cross-fade, the finer of a geomorph.
-fn drawn_levels(options: &TransitionOptions, shown: Shown) -> impl Iterator<Item = Level> {
-    let Shown { level, from, .. } = shown;
-    let levels = match options.kind {
-        _ if !shown.is_in_flight() => [level, Level::NOT_DRAWN],
-        TransitionKind::Geomorph => [level.min(from), Level::NOT_DRAWN],
-        _ => [level, from],
-    };
-    levels.into_iter().filter(|l| l.is_drawn())
 }
 
 fn elapsed_ms(dt_s: f32) -> f64 {

@@ -218,13 +218,12 @@ impl Hulls {
         knapsack.profiles.truncate(0);
         self.by_table.iter_mut().for_each(Vec::clear);
         self.by_table.resize(frame.rates.tables(), Vec::new());
-        for table in 0..frame.rates.tables() {
-            let coarsest = Level((frame.rates.levels(table as u16).len() - 1) as u8);
-            self.shared(table as u16, LevelRange { finest: Level::FINEST, coarsest }, frame.rates, knapsack);
+        for table in 0..frame.rates.tables() as u16 {
+            self.make(table, frame.rates.whole(table), frame.rates, knapsack);
         }
     }
 
-    /// The profile of a table cut to a range of drawn levels.
+    /// The profile of a table cut to a range of drawn levels. Those of whole tables have the tables' numbers.
     fn shared(
         &mut self,
         table: u16,
@@ -232,10 +231,25 @@ impl Hulls {
         rates: &TableRates,
         knapsack: &mut SharedKnapsack,
     ) -> u32 {
-        let known = &mut self.by_table[usize::from(table)];
-        if let Some(&(_, profile)) = known.iter().find(|(range, _)| *range == allowed) {
+        if allowed == rates.whole(table) {
+            return u32::from(table);
+        }
+        let known = self.by_table[usize::from(table)].iter().find(|(range, _)| *range == allowed);
+        if let Some(&(_, profile)) = known {
             return profile;
         }
+        let profile = self.make(table, allowed, rates, knapsack);
+        self.by_table[usize::from(table)].push((allowed, profile));
+        profile
+    }
+
+    fn make(
+        &mut self,
+        table: u16,
+        allowed: LevelRange,
+        rates: &TableRates,
+        knapsack: &mut SharedKnapsack,
+    ) -> u32 {
         let tick = self.ticks_per_us;
         self.items.clear();
         self.items.extend(rates.drawn(table, allowed).map(|(level, rate)| ProfileItem {
@@ -243,10 +257,8 @@ impl Hulls {
             ticks: ceil_ticks(rate.geometry_us * tick),
             item: level.0,
         }));
-        let profile = knapsack.profiles.push(&self.items);
-        known.push((allowed, profile));
-        self.shared_count = profile + 1;
-        profile
+        self.shared_count = knapsack.profiles.push(&self.items) + 1;
+        self.shared_count - 1
     }
 
     /// A profile for this candidate and frame alone, its whole cost in the ticks.
