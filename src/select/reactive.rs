@@ -171,7 +171,8 @@ impl Selector for Reactive {
             for i in range {
                 levels[i] = self.options.size.level(frame, i, self.factor, group.height_px);
                 saturated.all_finest &= levels[i] == frame.candidates.allowed[i].finest;
-                saturated.all_coarsest &= levels[i] == frame.minimum(i);
+                let coarsest = frame.rates.coarsest(frame.candidates.table[i]);
+                saturated.all_coarsest &= levels[i] >= frame.candidates.allowed[i].coarsest.min(coarsest);
             }
         }
         self.saturated = saturated;
