@@ -227,11 +227,15 @@ impl Machine {
 
 #[test]
 fn reactive_control_hunts_luanti() {
-    let (mut runtime, mut objects) = (runtime(Reactive::new(Default::default()).expect("good")), field());
-    let mut machine = Machine::usual();
-    let before = machine.switches(&mut runtime, &mut objects, half_us(), 120);
-    assert!(before > 0, "the scene calls for control");
-    assert_eq!(machine.switches(&mut runtime, &mut objects, half_us(), 600), 0);
+    let (finest, cheapest) = finest_and_cheapest_us();
+    for share in [0.2, 0.3, 0.5, 0.7, 0.8] {
+        let budget_us = cheapest + share * (finest - cheapest);
+        let (mut runtime, mut objects) = (runtime(Reactive::new(Default::default()).expect("good")), field());
+        let mut machine = Machine::usual();
+        let before = machine.switches(&mut runtime, &mut objects, budget_us, 120);
+        assert!(before > 0, "the scene calls for control");
+        assert_eq!(machine.switches(&mut runtime, &mut objects, budget_us, 600), 0, "share {share}");
+    }
 }
 
 #[test]
