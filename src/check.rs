@@ -260,14 +260,14 @@ pub struct Replay {
     options: RuntimeOptions,
     /// The level shown of everything that is drawn.
     shown: BTreeMap<(GroupId, ObjectId), Level>,
-    /// Groups that there have been.
-    groups: BTreeSet<GroupId>,
+    /// What was in view of each group that there has been, in the last frame with a view of it.
+    seen: BTreeMap<GroupId, BTreeSet<ObjectId>>,
 }
 
 impl Replay {
     /// A replay of a runtime that was made with `options` and has run no frame.
     pub fn new(options: RuntimeOptions) -> Self {
-        Self { options, shown: BTreeMap::new(), groups: BTreeSet::new() }
+        Self { options, shown: BTreeMap::new(), seen: BTreeMap::new() }
     }
 
     /// Checks the frame that `runtime` has just run with `input`.
@@ -283,8 +283,8 @@ impl Replay {
     ) -> Result<(), Violation> {
         let frame = runtime.last_frame(objects);
         self.apply(runtime.changes())?;
-        self.groups.extend(usable(input.views).map(|v| v.group));
-        self.dense_levels(runtime, objects)?;
+        self.dense_levels(runtime, objects, frame.candidates.groups().map(|(g, _)| g.group))?;
+        self.memory(&frame)?;
         self.in_view(&frame, input.views)?;
         self.allowed_levels(&frame)?;
         in_memory(runtime, &frame)?;
@@ -313,10 +313,32 @@ impl Replay {
         Ok(())
     }
 
+    /// What was wanted before is remembered of exactly what was in view before.
+    fn memory(&mut self, frame: &Frame<'_>) -> Result<(), Violation> {
+        for (group, range) in frame.candidates.groups() {
+            let now: BTreeSet<ObjectId> = range.clone().map(|i| who(frame, i).1).collect();
+            let before = self.seen.insert(group.group, now).unwrap_or_default();
+            for i in range {
+                let (remembered, at) = (frame.candidates.previous[i], who(frame, i));
+                let rule = "what was in view, and nothing else, is remembered";
+                hold_of(at, remembered.is_some() == before.contains(&at.1), rule, || {
+                    format!("{remembered:?}")
+                })?;
+            }
+        }
+        Ok(())
+    }
+
     /// What the lists of changes add up to is what is shown, one transition at a time.
-    fn dense_levels(&self, runtime: &Runtime, objects: &Objects) -> Result<(), Violation> {
+    fn dense_levels(
+        &self,
+        runtime: &Runtime,
+        objects: &Objects,
+        groups: impl Iterator<Item = GroupId>,
+    ) -> Result<(), Violation> {
         let mut dense = BTreeMap::new();
-        for &group in &self.groups {
+        let groups: BTreeSet<GroupId> = self.seen.keys().copied().chain(groups).collect();
+        for group in groups {
             for (slot, shown) in runtime.shown_slots(group) {
                 let at = (group, objects.id_of(slot).unwrap_or_default());
                 self.one_transition(at, shown)?;

@@ -210,7 +210,7 @@ pub struct Budget {
     pub frame_us: f64,
     /// The time to aim at: the frame's less headroom.
     pub target_us: f64,
-    /// What the selection may spend by the cost model: the target less the fades in flight, divided by how much slower
+    /// What the selection may spend by the cost model: the target less the fade reserve, divided by how much slower
     /// the machine has shown to be than the model says.
     pub select_us: f64,
 }

@@ -28,7 +28,8 @@ pub struct TransitionOptions {
     /// How long that takes, > 0.
     pub duration_ms: f32,
     /// Share of the frame's target that outgoing levels may cost, in 0…1. Beyond it refinements wait and coarsenings
-    /// switch hard.
+    /// switch hard. It is kept free whether fades are in flight or not: a budget that came and went with them would
+    /// make the selection change, that would start fades, and a still camera would never come to rest.
     pub reserve: f32,
 }
 
@@ -47,6 +48,11 @@ impl TransitionOptions {
         let lasts = self.duration_ms.is_finite() && self.duration_ms > 0.0;
         OptionsError::unless(lasts, "duration_ms", "must be finite and positive")?;
         OptionsError::unless((0.0..=1.0).contains(&self.reserve), "reserve", "must be from 0 to 1")
+    }
+
+    /// What is kept free for outgoing levels; nothing where there are no transitions.
+    pub fn reserve_us(&self, target_us: f64) -> f64 {
+        if self.kind == TransitionKind::Hard { 0.0 } else { f64::from(self.reserve) * target_us }
     }
 
     /// What a transition costs beyond the level it leads to.

@@ -370,7 +370,7 @@ fn bounds() -> impl Strategy<Value = Sphere> {
 }
 
 fn settings() -> impl Strategy<Value = Settings> {
-    let bias = select(vec![1.0, 1.0, 0.25, 3.0, 1e-3, 1e3, 1e-30, 1e30]);
+    let bias = select(vec![1.0, 1.0, 0.25, 3.0, 1e-3, 1e3, 1e-30, 1e6]);
     let distance = select(vec![f32::INFINITY, f32::INFINITY, 0.0, 5.0, 20.0, 33.3, 1e20]);
     let special = (bias, distance, prop::bool::weighted(0.1)).prop_map(|(bias, draw_distance, hidden)| {
         Settings { bias, draw_distance, hidden, ..Settings::default() }

@@ -324,8 +324,9 @@ impl Runtime {
 
     /// Lets the policy choose under this frame's budget.
     fn choose(&mut self, objects: &Objects, budget_us: f64, fades_us: f64) {
-        let mut budget = self.feedback.budget(if budget_us > 0.0 { budget_us } else { 0.0 });
-        budget.select_us = (budget.select_us - fades_us).max(0.0);
+        let mut budget = self.feedback.budget(if budget_us > 0.0 { budget_us.min(f64::MAX) } else { 0.0 });
+        let reserve_us = self.options.transition.reserve_us(budget.target_us);
+        budget.select_us = (budget.select_us - fades_us.max(reserve_us)).max(0.0);
         self.report.budget = budget;
         self.report.fades_us = fades_us;
         let mut levels = std::mem::take(&mut self.scratch.levels);
@@ -346,8 +347,8 @@ impl Runtime {
 
     /// Leads what is shown towards what is wanted, and lists what has changed.
     fn show(&mut self, objects: &Objects) {
-        let spare = f64::from(self.options.transition.reserve) * self.report.budget.target_us;
-        let mut reserve_us = (spare - self.report.fades_us).max(0.0);
+        let reserve_us = self.options.transition.reserve_us(self.report.budget.target_us);
+        let mut reserve_us = (reserve_us - self.report.fades_us).max(0.0);
         for run in 0..self.scratch.candidates.ends.len() {
             let group = self.scratch.candidates.ends[run].group;
             self.note_wanted(objects, group);

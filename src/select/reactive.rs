@@ -18,8 +18,8 @@ pub struct ReactiveOptions {
     pub size: ScreenSizeOptions,
     /// Half the width of the dead band around the target, as a fraction. Narrower tracks closer and hunts sooner.
     pub dead_band: f32,
-    /// Share of the relative error that is corrected per measurement. With measurements two frames late, values near 1
-    /// oscillate; a long dwell delays the answer as well, and wants a smaller share.
+    /// Share of the relative error that is corrected per measurement. Filter, dwell and measurements two frames late
+    /// delay the answer by a dozen frames: values from about 0.3 on hunt for ever, and a longer dwell wants a smaller one.
     pub gain: f32,
     /// The most that the factor rises per measurement, as a fraction.
     pub rise: f32,
@@ -34,7 +34,7 @@ impl Default for ReactiveOptions {
         Self {
             size: ScreenSizeOptions { dwell_ms: 100, ..ScreenSizeOptions::default() },
             dead_band: 0.04,
-            gain: 0.5,
+            gain: 0.2,
             rise: 0.1,
             fall: 0.2,
             range: (1e-6, 1e6),
@@ -171,7 +171,8 @@ impl Selector for Reactive {
             for i in range {
                 levels[i] = self.options.size.level(frame, i, self.factor, group.height_px);
                 saturated.all_finest &= levels[i] == frame.candidates.allowed[i].finest;
-                saturated.all_coarsest &= levels[i] == frame.minimum(i);
+                let coarsest = frame.rates.coarsest(frame.candidates.table[i]);
+                saturated.all_coarsest &= levels[i] >= frame.candidates.allowed[i].coarsest.min(coarsest);
             }
         }
         self.saturated = saturated;

@@ -112,6 +112,15 @@ struct Survey {
     low: f32,
 }
 
+impl Survey {
+    /// What to spend: what is held, held between `ease` and `budget`. Where a single item is too dear for that there is
+    /// no dead band: it would keep the item out, and with it perhaps most of the benefit.
+    fn target(&self, budget: u64, ease: u64) -> u64 {
+        let target = self.held.clamp(ease, budget);
+        if self.widest > target - self.cheapest { budget } else { target }
+    }
+}
+
 /// A class held at a position, whatever its slope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pin {
@@ -153,7 +162,7 @@ impl SharedKnapsack {
     ///
     /// With `ease` below `budget` the budget has a dead band: more is bought only up to `ease`, while what is held is
     /// kept up to `budget`. The choice is then the best for the cost that is held, held between the two; the
-    /// certificate stays that of `budget`.
+    /// certificate stays that of `budget`. Where one item alone takes more than that, the dead band is left out.
     ///
     /// The ½ follows Kellerer, Pferschy and Pisinger, *Knapsack Problems*, 2004, ch. 11: items that do not fit beside the
     /// cheapest of all others are dropped before hulls are made, and the rival that takes the critical step first is
@@ -181,7 +190,7 @@ impl SharedKnapsack {
             let shortfall = survey.cheapest - budget;
             return Outcome { shortfall, ..self.certify(0.0).outcome(budget) };
         }
-        let target = survey.held.clamp(ease, budget);
+        let target = survey.target(budget, ease);
         if survey.best <= target {
             self.take_all();
             return self.certify(0.0).outcome(budget);
