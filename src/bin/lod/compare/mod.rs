@@ -1,6 +1,8 @@
 //! `lod compare`: every policy over a scene and a camera path on a simulated machine.
 
+mod columns;
 mod given;
+mod report;
 mod summary;
 mod words;
 
@@ -16,9 +18,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lod_budget::runtime::RuntimeOptions;
 use lod_budget::sim::{Camera, CompareOptions, Comparison, Machine, Policy, Progress, compare};
 
-use crate::report;
-pub use given::Given;
-pub use summary::Summary;
+use given::Given;
+use summary::Summary;
 
 /// Compare policies: each one chooses the levels of the same scene along the same camera path, on the same simulated
 /// machine, under the same budget.
@@ -125,10 +126,10 @@ pub fn run(args: &Args, out: &mut dyn Write) -> anyhow::Result<()> {
 }
 
 /// What was asked for beside scene and path.
-pub struct Setting {
-    pub seed: u64,
-    pub camera: Camera,
-    pub budget_us: Option<f64>,
+struct Setting {
+    seed: u64,
+    camera: Camera,
+    budget_us: Option<f64>,
 }
 
 impl Args {
