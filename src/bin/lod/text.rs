@@ -37,7 +37,7 @@ pub fn count(n: u64) -> String {
         return digits;
     }
     let place = |(i, digit): (usize, char)| {
-        let gap = i > 0 && (digits.len() - i) % 3 == 0;
+        let gap = i > 0 && (digits.len() - i).is_multiple_of(3);
         [gap.then_some(' '), Some(digit)].into_iter().flatten()
     };
     digits.chars().enumerate().flat_map(place).collect()

@@ -24,7 +24,7 @@ use summary::Summary;
 /// Compare policies: each one chooses the levels of the same scene along the same camera path, on the same simulated
 /// machine, under the same budget.
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Args {
     /// building, city or forest (made on the spot), or a .json, .glb or .gltf file
     #[arg(default_value = "building")]
@@ -36,7 +36,7 @@ pub struct Args {
     #[arg(long, value_enum, default_value = "default")]
     machine: MachineKind,
     /// Frame budget in milliseconds [default: the median over frames of coarsest + 0.4 · (finest − coarsest)]
-    #[arg(long, value_name = "MS", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "MS", value_parser = positive)]
     budget_ms: Option<f64>,
     /// Policies, separated by commas [default: all]
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = policy)]
@@ -62,19 +62,19 @@ pub struct Args {
 #[command(next_help_heading = "Camera")]
 struct Lens {
     /// Frames per second of path time, whatever frames take
-    #[arg(long, value_name = "HZ", default_value_t = 60.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ", default_value_t = 60.0)]
     fps: f64,
     /// Vertical field of view in degrees
-    #[arg(long, value_name = "DEG", default_value_t = 60.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", default_value_t = 60.0)]
     fov: f32,
     /// Width and height of the image in pixels
     #[arg(long, value_name = "WxH", default_value = "1920x1080", value_parser = viewport)]
     viewport: Vec2,
     /// Distance of the near plane
-    #[arg(long, value_name = "DIST", default_value_t = 0.1, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DIST", default_value_t = 0.1)]
     near: f32,
     /// Distance of the far plane
-    #[arg(long, value_name = "DIST", default_value_t = 1000.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DIST", default_value_t = 1000.0)]
     far: f32,
 }
 

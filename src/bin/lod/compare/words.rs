@@ -125,8 +125,10 @@ fn break_note(breaks: &[Break]) -> String {
     format!("The path has {}; the camera waits before each.", kinds.join(" and "))
 }
 
-/// What policies can be best in: lower is better.
-const CONTESTS: [(&str, fn(&PolicyRow) -> f64); 5] = [
+/// What policies can be best in, and how it is scored: lower is better.
+type Contest = (&'static str, fn(&PolicyRow) -> f64);
+
+const CONTESTS: [Contest; 5] = [
     ("tracking", |p| p.metrics.tracking_over_budget),
     ("misses", |p| p.metrics.missed),
     ("longest frame", |p| p.metrics.max_over_budget),
@@ -136,7 +138,7 @@ const CONTESTS: [(&str, fn(&PolicyRow) -> f64); 5] = [
 
 /// Who was best in what, the ends of the scale left out.
 fn best_note(policies: &[PolicyRow]) -> String {
-    let best = |(name, score): (&str, fn(&PolicyRow) -> f64)| {
+    let best = |(name, score): Contest| {
         let competing = || policies.iter().filter(|p| p.competes());
         let least = competing().map(score).fold(f64::INFINITY, f64::min);
         let winners: Vec<&str> = competing().filter(|p| score(p) <= least).map(|p| p.policy).collect();
