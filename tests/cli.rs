@@ -439,7 +439,10 @@ fn a_budget_that_cannot_be_met_is_reported() {
     assert_eq!(poor["infeasible_frames"].as_u64(), Some(19));
     let (mean, max) = (poor["shortfall_ms"]["mean"].as_f64(), poor["shortfall_ms"]["max"].as_f64());
     assert!(mean > Some(0.0) && max >= mean);
-    let words = room.done("compare yard.json --budget-ms 0.0001 --policies predictive");
+    let words = room.done("compare yard.json --budget-ms 0.0001 --policies predictive --out out");
+    let plot = room.read("out/time_over_budget.svg");
+    let lines = plot.lines().filter(|line| line.starts_with("<polyline") && line.contains("#0072B2"));
+    assert_eq!(lines.count(), 2, "the policy's line and its legend");
     assert!(words.contains("In 19 frames (100.0 %) the coarsest levels alone exceed the budget"), "{words}");
 }
 

@@ -94,8 +94,8 @@ Policies:
   predictive          the knapsack under the predicted time, with a certificate
 
 Machines:
-  default             coefficients up to 30 % below or 40 % above what the runtime expects, assets off by about
-                      10 %, frame noise of 3 %, measurements two frames late
+  default             coefficients 30 % below to 40 % above what the runtime expects,
+                      assets off by about 10 %, frame noise of 3 %, measured 2 frames late
   ideal               exactly as the runtime expects, without noise";
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -109,6 +109,9 @@ enum MachineKind {
 pub fn run(args: &Args, out: &mut dyn Write) -> anyhow::Result<()> {
     let given = Given::load(&args.scene, args.path.as_deref(), args.assume_levels)?;
     let machine = machine(args, &given);
+    if let Some(folder) = &args.out {
+        report::make(folder)?;
+    }
     let comparison = compare_all(args, &given, &machine)?;
     let summary = Summary::of(&given, &machine, &args.setting(), &comparison);
     if let Some(folder) = &args.out {

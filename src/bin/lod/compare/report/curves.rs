@@ -18,7 +18,7 @@ const LEGEND: u32 = 190;
 /// A line has so many points.
 const POINTS: usize = 400;
 
-/// Where a plot of shares of the budget ends at most.
+/// Where a plot of shares of the budget ends, unless one frame in a hundred of a competing policy takes longer.
 const CUT: f64 = 3.0;
 
 /// A line per policy.
@@ -52,9 +52,11 @@ pub fn time_over_budget(summary: &Summary, comparison: &Comparison) -> anyhow::R
     let lines: Vec<Line> = comparison.policies.iter().map(line).collect();
     let longest = lines.iter().flat_map(|l| &l.points).map(|p| p.0).fold(1.0, f64::max);
     let shortest = lines.iter().flat_map(|l| &l.points).map(|p| p.0).fold(1.0, f64::min);
+    let p99 = |r: &&PolicyResult| r.metrics.frame_ms.p99 * 1e3 / comparison.budget_us;
+    let cut = style::competing(comparison).iter().map(p99).fold(CUT, f64::max);
     Curves {
         title: format!("How long frames take in '{}'{}", plain(&summary.scene), assumed(summary)),
-        x: Axis { name: "frame time ÷ budget", range: (shortest * 0.95)..(longest.min(CUT) * 1.02) },
+        x: Axis { name: "frame time ÷ budget", range: (shortest * 0.95)..(longest.min(cut) * 1.02) },
         y: Axis { name: "frames that take no longer, %", range: 0.0..101.0 },
         lines,
         mark: Some((1.0, "budget")),
@@ -69,7 +71,7 @@ pub fn gain_over_bound(summary: &Summary, comparison: &Comparison) -> anyhow::Re
         line(result, quantiles(gains.collect()))
     };
     let lines: Vec<Line> = style::competing(comparison).into_iter().map(gains).collect();
-    let least = lines.iter().flat_map(|l| &l.points).map(|p| p.1).fold(90.0, f64::min);
+    let least = lines.iter().flat_map(|l| &l.points).map(|p| p.1).fold(90.0, f64::min).max(0.0);
     Curves {
         title: format!("How well frames spend their time in '{}'{}", plain(&summary.scene), assumed(summary)),
         x: Axis { name: "frames, worst first, %", range: 0.0..100.0 },
@@ -148,8 +150,8 @@ impl Curves {
     }
 
     fn draw_line(&self, chart: &mut Chart<'_, '_>, line: &Line) -> anyhow::Result<()> {
-        let points: Vec<(f64, f64)> =
-            line.points.iter().copied().filter(|p| p.0 <= self.x.range.end).collect();
+        let inside = |p: &(f64, f64)| p.0 <= self.x.range.end && p.1 >= self.y.range.start;
+        let points: Vec<(f64, f64)> = line.points.iter().copied().filter(inside).collect();
         let style = line.stroke.color.stroke_width(line.stroke.width);
         match line.stroke.dash {
             Some((dash, gap)) => chart.draw_series(DashedLineSeries::new(points, dash, gap, style))?,

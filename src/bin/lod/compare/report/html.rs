@@ -40,9 +40,9 @@ figure { margin: 2.5rem 0; } figure svg { max-width: 100%; height: auto; }
 figcaption { color: #555; font-size: .9rem; max-width: 46rem; }
 ";
 
-const FRAME_TIME: &str = "Each panel is one policy. The budget can be met only where the budget line crosses the grey band: \
-    below it even all coarsest levels take longer than the budget, above it all finest levels take less. Panels are \
-    cut where a frame takes far longer than all others.";
+const FRAME_TIME: &str = "Each panel is one policy. Where the grey band lies above the budget line, even all coarsest \
+    levels take longer than the budget; where it lies below, all finest levels take less. Panels are cut where a \
+    frame takes far longer than all others.";
 const TIME_OVER_BUDGET: &str = "The further left a line rises, the shorter the frames; the steeper it is, the more \
     alike they are. What lies right of 1 exceeds the budget.";
 const GAIN_OVER_BOUND: &str = "Every policy is held against the best that the time it took itself could have bought: \

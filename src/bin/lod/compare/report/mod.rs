@@ -25,6 +25,11 @@ struct Plots {
     gain_over_bound: String,
 }
 
+/// Makes the folder, before the long work whose results go there.
+pub fn make(folder: &Path) -> anyhow::Result<()> {
+    fs::create_dir_all(folder).with_context(|| format!("{}: it cannot be made", folder.display()))
+}
+
 /// Writes everything to `folder`, each file as a whole.
 pub fn write(folder: &Path, summary: &Summary, comparison: &Comparison) -> anyhow::Result<()> {
     let plots = Plots {
@@ -40,7 +45,6 @@ pub fn write(folder: &Path, summary: &Summary, comparison: &Comparison) -> anyho
         ("time_over_budget.svg", plots.time_over_budget.into_bytes()),
         ("gain_over_bound.svg", plots.gain_over_bound.into_bytes()),
     ];
-    fs::create_dir_all(folder).with_context(|| format!("{}: it cannot be made", folder.display()))?;
     for (name, bytes) in files {
         write_atomically(&folder.join(name), &bytes)?;
     }
