@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Break, CameraPath, FileError, Scene, disk};
 use crate::bounds::{Aabb, Sphere};
+use crate::knapsack::{Instance, Item, greedy};
 use crate::scene::{Object, Settings};
 use crate::table::LodTable;
 
@@ -18,7 +19,7 @@ pub enum Inspection {
     Scene(SceneInspection),
     /// Poses over time.
     Path(PathInspection),
-    /// A multiple-choice knapsack `{"budget": B, "classes": [[[cost, benefit], …], …]}`: recognised, not checked.
+    /// A multiple-choice knapsack `{"budget": B, "classes": [[[cost, benefit], …], …]}`.
     Instance(InstanceInspection),
 }
 
@@ -121,12 +122,24 @@ pub struct PathInspection {
 }
 
 /// What can be said of a knapsack at a glance.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct InstanceInspection {
+    /// The cost that a choice may have at most.
+    pub budget: f64,
     /// How many classes there are.
     pub classes: usize,
     /// How many items there are in all classes.
     pub items: usize,
+    /// Number of items of the smallest class; 0 without classes.
+    pub fewest_items: usize,
+    /// Number of items of the largest class.
+    pub most_items: usize,
+    /// Cost of the cheapest choice.
+    pub least_cost: f64,
+    /// Cost of the dearest choice.
+    pub most_cost: f64,
+    /// Whether any choice fits the budget.
+    pub feasible: bool,
 }
 
 /// Reads a file of any kind and says what is in it. `.glb` and `.gltf` are scenes, `.csv`, `.tum` and `.txt` paths;
@@ -146,16 +159,18 @@ pub fn inspect(path: &Path) -> Result<Inspection, FileError> {
     }
 }
 
-/// Says what is in a JSON file: an instance where it has classes, else a scene. `file` names it in errors.
+/// Says what is in a JSON file: an instance where it has classes and no tables, else a scene. `file` names it in
+/// errors.
 ///
 /// # Errors
-/// Malformed JSON, and what the reader of scenes refuses.
+/// Malformed JSON, and what the reader of instances or scenes refuses.
 pub fn inspect_json(bytes: &[u8], file: &str) -> Result<Inspection, FileError> {
-    match super::json::parse(disk::text_of(bytes, file)?, file)? {
-        Keys { format: None, classes: Some(classes) } => Ok(Inspection::Instance(InstanceInspection {
-            classes: classes.len(),
-            items: classes.iter().map(Vec::len).sum(),
-        })),
+    let text = disk::text_of(bytes, file)?;
+    match super::json::parse(text, file)? {
+        Keys { classes: Some(_), tables: None } => {
+            let instance = Instance::from_json(text).map_err(|e| FileError::whole(file, e.to_string()))?;
+            Ok(Inspection::Instance(InstanceInspection::of(&instance)))
+        }
         _ => Scene::from_json(bytes, file).map(|s| Inspection::Scene(SceneInspection::of(&s))),
     }
 }
@@ -163,8 +178,28 @@ pub fn inspect_json(bytes: &[u8], file: &str) -> Result<Inspection, FileError> {
 /// The keys that tell scenes from instances.
 #[derive(Deserialize)]
 struct Keys {
-    format: Option<IgnoredAny>,
-    classes: Option<Vec<Vec<IgnoredAny>>>,
+    classes: Option<IgnoredAny>,
+    tables: Option<IgnoredAny>,
+}
+
+impl InstanceInspection {
+    /// What can be said of a knapsack.
+    pub fn of(instance: &Instance) -> Self {
+        let sizes = || instance.classes().map(<[Item]>::len);
+        let costs = |class: &[Item], worst: f64, pick: fn(f64, f64) -> f64| {
+            class.iter().map(|item| item.cost).fold(worst, pick)
+        };
+        Self {
+            budget: instance.budget(),
+            classes: instance.len(),
+            items: instance.items().len(),
+            fewest_items: sizes().min().unwrap_or(0),
+            most_items: sizes().max().unwrap_or(0),
+            least_cost: instance.classes().map(|class| costs(class, f64::INFINITY, f64::min)).sum(),
+            most_cost: instance.classes().map(|class| costs(class, 0.0, f64::max)).sum(),
+            feasible: greedy(instance).feasible,
+        }
+    }
 }
 
 impl SceneInspection {

@@ -39,8 +39,23 @@ fn a_scene_of_nothing_has_no_extent() {
 #[test]
 fn json_is_told_apart_by_its_keys() {
     let instance = br#"{"budget": 5, "classes": [[[1, 2], [3, 4]], [[0, 0]]]}"#;
-    let found = inspect_json(instance, "i.json").expect("an instance");
-    assert_eq!(found, Inspection::Instance(InstanceInspection { classes: 2, items: 3 }));
+    let expected = InstanceInspection {
+        budget: 5.0,
+        classes: 2,
+        items: 3,
+        fewest_items: 1,
+        most_items: 2,
+        least_cost: 1.0,
+        most_cost: 3.0,
+        feasible: true,
+    };
+    assert_eq!(inspect_json(instance, "i.json"), Ok(Inspection::Instance(expected)));
+    let named = br#"{"format": "lod-knapsack", "version": 1, "budget": 0.5, "classes": [[[1, 2]]]}"#;
+    let Ok(Inspection::Instance(found)) = inspect_json(named, "n.json") else { panic!("an instance") };
+    assert!(!found.feasible);
+    let error =
+        inspect_json(br#"{"budget": 5, "classes": [[[-1, 2]]]}"#, "b.json").expect_err("a negative cost");
+    assert!(error.to_string().starts_with("b.json: class 0, item 0: the cost"), "{error}");
     let error = inspect_json(b"{}", "other.json").expect_err("neither");
     assert_eq!(error.to_string(), "other.json: line 1, column 2: missing field `format`");
 }

@@ -16,7 +16,7 @@ use crate::text;
 ///
 /// The same seed gives the same bytes on every platform. Without --seed they are those of the bundled scenes.
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Args {
     /// What to make
     #[arg(value_enum)]

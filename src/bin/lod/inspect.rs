@@ -126,5 +126,9 @@ fn break_in_words(b: &Break) -> String {
 fn instance_in_words(i: &InstanceInspection) -> String {
     let mut lines = Lines::default();
     lines.say("Instance", format!("{} classes, {}", count(i.classes as u64), counted(i.items, "item")));
+    lines.say("Class", format!("{} to {} items", i.fewest_items, i.most_items));
+    lines.say("Cost", format!("{} to {}", i.least_cost, i.most_cost));
+    let feasible = if i.feasible { "can be met" } else { "cannot be met" };
+    lines.say("Budget", format!("{}: {feasible}", i.budget));
     lines.0
 }

@@ -4,7 +4,6 @@
 mod compare;
 mod generate;
 mod inspect;
-mod report;
 mod solve;
 mod text;
 

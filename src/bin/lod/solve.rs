@@ -15,7 +15,7 @@ use crate::text;
 /// INSTANCE is JSON: {"budget": B, "classes": [[[cost, benefit], …], …]}. A budget that cannot be met is an answer, not
 /// an error: the cheapest choice, and by how much it exceeds the budget.
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Args {
     /// The instance, a JSON file; - reads standard input
     #[arg(value_name = "INSTANCE")]
@@ -24,7 +24,7 @@ pub struct Args {
     #[arg(long)]
     exact: bool,
     /// Give up the search for the optimum after so many seconds, with the best choice so far
-    #[arg(long, value_name = "SECONDS", requires = "exact", allow_negative_numbers = true, value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", requires = "exact", value_parser = seconds)]
     limit_s: Option<Duration>,
     /// Print one JSON object and nothing else
     #[arg(long)]
@@ -82,7 +82,7 @@ const CHOICES_SHOWN: usize = 100;
 fn in_words(instance: &Instance, solution: &Solution) -> String {
     let mut text = format!(
         "Instance   {}, {}, budget {}\nCost       {}\nBenefit    {}\n",
-        text::counted(instance.len(), "class").replace("classs", "classes"),
+        counted_classes(instance.len()),
         text::counted(instance.items().len(), "item"),
         instance.budget(),
         solution.cost,
@@ -99,6 +99,10 @@ fn in_words(instance: &Instance, solution: &Solution) -> String {
     }
     text += &format!("Choice     {}\n", choice_in_words(&solution.choice));
     text
+}
+
+fn counted_classes(n: usize) -> String {
+    if n == 1 { "1 class".to_owned() } else { format!("{} classes", text::count(n as u64)) }
 }
 
 fn choice_in_words(choice: &[u32]) -> String {

@@ -5,16 +5,15 @@ use std::io::{self, IsTerminal};
 use comfy_table::{Cell, CellAlignment, ContentArrangement, Table};
 
 /// A table without lines: the first column to the left, all others to the right.
-pub fn table(headings: &[&str], rows: &[Vec<String>]) -> String {
+pub fn table(headings: &[String], rows: &[Vec<String>]) -> String {
     let mut table = Table::new();
     table.load_style(comfy_table::presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled);
-    let headings = headings.iter().map(|h| Cell::new(h).set_alignment(CellAlignment::Right));
-    table.set_header(headings);
+    let side = |column| if column == 0 { CellAlignment::Left } else { CellAlignment::Right };
+    table.set_header(headings.iter().enumerate().map(|(i, h)| Cell::new(h).set_alignment(side(i))));
     table.add_rows(rows);
     for (i, column) in table.column_iter_mut().enumerate() {
-        let right = CellAlignment::Right;
-        column.set_cell_alignment(if i == 0 { CellAlignment::Left } else { right });
-        column.set_padding((if i == 0 { 0 } else { 1 }, 1));
+        column.set_cell_alignment(side(i));
+        column.set_padding((u16::from(i > 0), 1));
     }
     let lines: Vec<String> = table.lines().map(|line| line.trim_end().to_owned() + "\n").collect();
     lines.concat()
@@ -38,7 +37,7 @@ pub fn count(n: u64) -> String {
         return digits;
     }
     let place = |(i, digit): (usize, char)| {
-        let gap = i > 0 && (digits.len() - i) % 3 == 0;
+        let gap = i > 0 && (digits.len() - i).is_multiple_of(3);
         [gap.then_some(' '), Some(digit)].into_iter().flatten()
     };
     digits.chars().enumerate().flat_map(place).collect()
@@ -49,9 +48,18 @@ pub fn counted(n: usize, what: &str) -> String {
     format!("{} {what}{}", count(n as u64), if n == 1 { "" } else { "s" })
 }
 
+/// So many decimals, and no minus before a zero.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(zero) if zero.chars().all(|c| matches!(c, '0' | '.')) => zero.to_owned(),
+        _ => text,
+    }
+}
+
 /// A fraction in percent.
 pub fn percent(fraction: f64, decimals: usize) -> String {
-    format!("{:.decimals$}", fraction * 100.0)
+    fixed(fraction * 100.0, decimals)
 }
 
 /// How many decimals show `value` with `digits` significant ones.
@@ -73,7 +81,10 @@ mod tests {
     fn numbers_read_well() {
         assert_eq!([0, 999, 4321, 12345, 1234567].map(count), ["0", "999", "4321", "12 345", "1 234 567"]);
         assert_eq!((counted(1, "jump"), counted(0, "jump")), ("1 jump".into(), "0 jumps".into()));
-        assert_eq!(percent(0.12345, 1), "12.3");
+        assert_eq!(
+            (percent(0.12345, 1), percent(-1e-9, 2), fixed(-0.5, 1)),
+            ("12.3".into(), "0.00".into(), "-0.5".into())
+        );
         let values = [0.0, 0.00012345, 1.2345, 1234.5, -0.5];
         assert_eq!(values.map(|v| significant(v, 3)), ["0.00", "0.000123", "1.23", "1234", "-0.500"]);
     }

@@ -1,33 +1,6 @@
 //! Procedural scenes, each with a camera path, made from a seed alone.
 //!
-//! # Bundled scenes
-//!
-//! | scene | seed | objects | tables | triangles, finest | coarsest | in view along its path (finest): least, mean, most |
-//! |---|---|---|---|---|---|---|
-//! | building | 1993 | 2 322 | 26 | 18.4 M | 0.13 M | 0.1 M, 2.0 M, 4.1 M |
-//! | city | 1968 | 4 223 | 17 | 59.2 M | 0.29 M | 2.1 M, 11.7 M, 16.0 M |
-//! | forest | 1969 | 4 267 | 18 | 33.6 M | 0.16 M | 0.7 M, 5.7 M, 12.7 M |
-//!
-//! "In view" is by the frustum of a 60° view at 1920×1080 reaching 1000 m, and by the draw distances of the objects;
-//! walls hide nothing. `cargo test --features sim --test generate -- --nocapture` prints these numbers.
-//!
-//! **building**: five storeys around an atrium, after the model of Soda Hall that the field began with. Rooms differ
-//! by an order of magnitude in what they cost: store rooms and offices, and on the other side of the wall laboratories,
-//! libraries and offices of six desks. Furniture has a draw distance, smaller things a shorter one. The path (80 s)
-//! starts at rest at a window, hurries along the galleries, looks up into the atrium, rests before a piano, turns on
-//! the heel into the lecture hall, climbs the stairs, opens the door on the laboratories of the first storey and rests
-//! there, climbs again, jumps to the top gallery and looks down into the atrium.
-//!
-//! **city**: ten by ten blocks over one and a half kilometres: houses, shops, apartments, towers, parks and a market
-//! around a fountain; streets with parked cars, buses, lamps and traffic lights. The path (86 s) starts at rest in a
-//! suburb, drives in, turns into the street of the towers, turns again, waits five seconds at a light by the market,
-//! looks down, rises over the roofs and reveals the whole city.
-//!
-//! **forest**: 1 850 trees, and shrubs, ferns and rocks, over four hundred metres square; in the clearing a festival with a
-//! crowd of 800, denser before the stage. People are skinned (twice the cost) and worth more than trees; the singer is
-//! worth most. The path (81 s) starts at rest at the edge of the forest, walks up the lane, past an old oak, out into
-//! the clearing where the crowd comes into view at once, through it, jumps to the singer's face and rests there, and
-//! turns to the crowd.
+//! What is in the scenes that come with the project, and along their paths, is told in `scenes/README.md`.
 //!
 //! # What the tables say
 //!
@@ -72,8 +45,8 @@ use crate::files::{CameraPath, Scene};
 
 pub use scatter::{scatter, scatter_path};
 
-/// A scene that can be made from a seed. The same seed gives the same scene and the same path on every platform: to
-/// the last bit, but for rotations, whose normalisation may differ in it.
+/// A scene that can be made from a seed. The same seed gives the same scene and the same path on every platform, to
+/// the last bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recipe {
     /// A furnished building of five storeys.

@@ -35,7 +35,7 @@ pub fn scatter(objects: usize, seed: u64) -> Scene {
 }
 
 /// A flight of half a minute through a scatter of so many objects, however large it is: at rest on its edge for five
-/// seconds, rising over its middle, and looking back from the other edge.
+/// seconds, rising over its middle, and looking back from before the other edge.
 pub fn scatter_path(objects: usize, seed: u64) -> CameraPath {
     let reach = (objects as f64 * GROUND).sqrt() / 2.0;
     let street = (BLOCK + PITCH) / 2.0 - reach;
@@ -43,8 +43,8 @@ pub fn scatter_path(objects: usize, seed: u64) -> CameraPath {
         key(0.0, [street, 1.7, reach], 0.0, 0.0),
         key(5.0, [street, 1.7, reach], 0.0, 0.0),
         key(15.0, [0.0, 12.0, 0.0], 20.0, -10.0),
-        key(25.0, [0.0, 25.0, -reach], 0.0, 0.0),
-        key(30.0, [0.0, 25.0, -reach], 180.0, -10.0),
+        key(25.0, [0.0, 25.0, -0.7 * reach], 0.0, 0.0),
+        key(30.0, [0.0, 25.0, -0.7 * reach], 180.0, -10.0),
     ];
     Film { name: "scatter", hz: 20, sway_deg: 0.5, shots: &[&shot] }.shoot(seed)
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::bail;
+use anyhow::ensure;
 use lod_budget::files::{CameraPath, Scene};
 use lod_budget::sim::generate::Recipe;
 
@@ -51,11 +51,10 @@ impl Given {
 
     fn read(scene_file: &Path, path_file: Option<&Path>) -> anyhow::Result<Self> {
         let scene = Scene::read(scene_file)?;
-        let path_file = path_file.map_or_else(|| scene_file.with_extension("csv"), Path::to_owned);
-        if !path_file.exists() && path_file == scene_file.with_extension("csv") {
-            let (scene, path) = (scene_file.display(), path_file.display());
-            bail!("{scene}: camera path: there is no {path}; name one with --path");
-        }
+        let path_file = match path_file {
+            Some(file) => file.to_owned(),
+            None => own_path(scene_file)?,
+        };
         Ok(Self {
             scene,
             path: CameraPath::read(&path_file)?,
@@ -70,4 +69,12 @@ impl Given {
     pub fn scene_label(&self) -> String {
         self.scene_file.as_ref().map_or_else(|| self.scene.name.clone(), |file| file.display().to_string())
     }
+}
+
+/// The path that belongs to a scene: the CSV file of its name beside it.
+fn own_path(scene_file: &Path) -> anyhow::Result<PathBuf> {
+    let file = scene_file.with_extension("csv");
+    let (scene, path) = (scene_file.display(), file.display());
+    ensure!(file.exists(), "{scene}: camera path: there is no {path}; name one with --path");
+    Ok(file)
 }

@@ -1,6 +1,8 @@
 //! `lod compare`: every policy over a scene and a camera path on a simulated machine.
 
+mod columns;
 mod given;
+mod report;
 mod summary;
 mod words;
 
@@ -16,14 +18,13 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lod_budget::runtime::RuntimeOptions;
 use lod_budget::sim::{Camera, CompareOptions, Comparison, Machine, Policy, Progress, compare};
 
-use crate::report;
-pub use given::Given;
-pub use summary::Summary;
+use given::Given;
+use summary::Summary;
 
 /// Compare policies: each one chooses the levels of the same scene along the same camera path, on the same simulated
 /// machine, under the same budget.
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Args {
     /// building, city or forest (made on the spot), or a .json, .glb or .gltf file
     #[arg(default_value = "building")]
@@ -35,7 +36,7 @@ pub struct Args {
     #[arg(long, value_enum, default_value = "default")]
     machine: MachineKind,
     /// Frame budget in milliseconds [default: the median over frames of coarsest + 0.4 · (finest − coarsest)]
-    #[arg(long, value_name = "MS", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "MS", value_parser = positive)]
     budget_ms: Option<f64>,
     /// Policies, separated by commas [default: all]
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = policy)]
@@ -61,19 +62,19 @@ pub struct Args {
 #[command(next_help_heading = "Camera")]
 struct Lens {
     /// Frames per second of path time, whatever frames take
-    #[arg(long, value_name = "HZ", default_value_t = 60.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ", default_value_t = 60.0)]
     fps: f64,
     /// Vertical field of view in degrees
-    #[arg(long, value_name = "DEG", default_value_t = 60.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", default_value_t = 60.0)]
     fov: f32,
     /// Width and height of the image in pixels
     #[arg(long, value_name = "WxH", default_value = "1920x1080", value_parser = viewport)]
     viewport: Vec2,
     /// Distance of the near plane
-    #[arg(long, value_name = "DIST", default_value_t = 0.1, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DIST", default_value_t = 0.1)]
     near: f32,
     /// Distance of the far plane
-    #[arg(long, value_name = "DIST", default_value_t = 1000.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DIST", default_value_t = 1000.0)]
     far: f32,
 }
 
@@ -93,8 +94,8 @@ Policies:
   predictive          the knapsack under the predicted time, with a certificate
 
 Machines:
-  default             coefficients up to 30 % below or 40 % above what the runtime expects, assets off by about
-                      10 %, frame noise of 3 %, measurements two frames late
+  default             coefficients 30 % below to 40 % above what the runtime expects,
+                      assets off by about 10 %, frame noise of 3 %, measured 2 frames late
   ideal               exactly as the runtime expects, without noise";
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -108,6 +109,9 @@ enum MachineKind {
 pub fn run(args: &Args, out: &mut dyn Write) -> anyhow::Result<()> {
     let given = Given::load(&args.scene, args.path.as_deref(), args.assume_levels)?;
     let machine = machine(args, &given);
+    if let Some(folder) = &args.out {
+        report::make(folder)?;
+    }
     let comparison = compare_all(args, &given, &machine)?;
     let summary = Summary::of(&given, &machine, &args.setting(), &comparison);
     if let Some(folder) = &args.out {
@@ -125,10 +129,10 @@ pub fn run(args: &Args, out: &mut dyn Write) -> anyhow::Result<()> {
 }
 
 /// What was asked for beside scene and path.
-pub struct Setting {
-    pub seed: u64,
-    pub camera: Camera,
-    pub budget_us: Option<f64>,
+struct Setting {
+    seed: u64,
+    camera: Camera,
+    budget_us: Option<f64>,
 }
 
 impl Args {

@@ -1,9 +1,9 @@
 //! A comparison on the terminal: what was compared, a row per policy, and what to make of it.
 
-use std::fmt::Write;
-
 use lod_budget::files::{Break, BreakKind};
+use lod_budget::rate::CostModel;
 
+use super::columns::{Column, TIME, WORTH, ms};
 use super::summary::{PolicyRow, Summary};
 use crate::text::{self, counted, percent, plain, significant};
 
@@ -14,27 +14,28 @@ pub fn of(summary: &Summary) -> String {
         text += &table(summary, &columns);
         text += "\n";
     }
-    text + &notes(summary)
+    notes(summary).iter().fold(text, |text, note| text + note + "\n")
 }
 
 fn head(s: &Summary) -> String {
-    let mut text = String::new();
-    let mut line = |name: &str, words: String| {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{name:<8}{words}");
-    };
+    facts(s).map(|(name, words)| format!("{name:<8}{words}\n")).concat()
+}
+
+/// What was compared on.
+pub fn facts(s: &Summary) -> [(&'static str, String); 4] {
     let (objects, tables) = (counted(s.objects, "object"), counted(s.tables, "table"));
-    line("Scene", format!("{}: {objects}, {tables}{}", plain(&s.scene), assumed(s)));
     let frames = counted(s.frames, "frame");
-    line("Path", format!("{}: {:.1} s, {frames} at {} Hz", plain(&s.path), s.path_duration_s, s.camera.fps));
-    line("Machine", machine(s));
     let origin = if s.default_budget { " (the default for this scene, path and machine)" } else { "" };
-    line("Budget", format!("{} ms{origin}", significant(s.budget_ms, 4)));
-    text
+    [
+        ("Scene", format!("{}: {objects}, {tables}{}", plain(&s.scene), assumed(s))),
+        ("Path", format!("{}: {:.1} s, {frames} at {} Hz", plain(&s.path), s.path_duration_s, s.camera.fps)),
+        ("Machine", format!("{}, seed {}: {}", s.machine, s.seed, model(&s.cost_model.actual))),
+        ("Budget", format!("{} ms{origin}", significant(s.budget_ms, 4))),
+    ]
 }
 
 /// What must be said wherever levels were assumed.
-pub fn assumed(s: &Summary) -> String {
+fn assumed(s: &Summary) -> String {
     match s.assume_levels {
         None => String::new(),
         Some(n) => {
@@ -43,52 +44,16 @@ pub fn assumed(s: &Summary) -> String {
     }
 }
 
-fn machine(s: &Summary) -> String {
-    let model = s.cost_model.actual;
+/// What drawing takes.
+pub fn model(model: &CostModel) -> String {
     let ns = |us: f64| significant(us * 1e3, 3);
     format!(
-        "{}, seed {}: draw {} µs, vertex {} ns, triangle {} ns, pixel {} ns",
-        s.machine,
-        s.seed,
+        "draw {} µs, vertex {} ns, triangle {} ns, pixel {} ns",
         significant(model.draw_us, 3),
         ns(model.vertex_us),
         ns(model.triangle_us),
         ns(model.pixel_us)
     )
-}
-
-/// A column: its heading, and its text for a policy.
-struct Column {
-    heading: &'static str,
-    value: fn(&Summary, &PolicyRow) -> String,
-}
-
-const fn column(heading: &'static str, value: fn(&Summary, &PolicyRow) -> String) -> Column {
-    Column { heading, value }
-}
-
-const TIME: [Column; 8] = [
-    column("mean\nms", |s, p| ms(s, p.metrics.frame_ms.mean)),
-    column("std\nms", |s, p| ms(s, p.metrics.frame_ms.std)),
-    column("p50\nms", |s, p| ms(s, p.metrics.frame_ms.p50)),
-    column("p95\nms", |s, p| ms(s, p.metrics.frame_ms.p95)),
-    column("p99\nms", |s, p| ms(s, p.metrics.frame_ms.p99)),
-    column("max\nms", |s, p| ms(s, p.metrics.frame_ms.max)),
-    column("std\n% budget", |_, p| percent(p.metrics.std_over_budget, 1)),
-    column("missed\n% frames", |_, p| percent(p.metrics.missed, 2)),
-];
-
-const WORTH: [Column; 6] = [
-    column("tracking\n% budget", |_, p| percent(p.metrics.tracking_over_budget, 2)),
-    column("max\n× budget", |_, p| format!("{:.2}", p.metrics.max_over_budget)),
-    column("used\n% budget", |_, p| percent(p.metrics.budget_used, 1)),
-    column("gain\n% bound", |_, p| percent(p.metrics.gain_over_bound, 2)),
-    column("switches\n/object s", |_, p| format!("{:.3}", p.metrics.switches_per_object_second)),
-    column("reversals\n/object s", |_, p| format!("{:.4}", p.metrics.reversals_per_object_second)),
-];
-
-fn ms(s: &Summary, value: f64) -> String {
-    format!("{value:.*}", text::decimals_for(s.budget_ms, 4))
 }
 
 /// A terminal as wide as this takes all columns in one table.
@@ -103,7 +68,8 @@ fn layout(columns: Option<usize>) -> Vec<Vec<&'static Column>> {
 }
 
 fn table(summary: &Summary, columns: &[&Column]) -> String {
-    let headings: Vec<&str> = std::iter::once("policy\n").chain(columns.iter().map(|c| c.heading)).collect();
+    let names = columns.iter().map(|c| format!("{}\n{}", c.name, c.unit));
+    let headings: Vec<String> = std::iter::once("policy".to_owned()).chain(names).collect();
     let row = |p: &PolicyRow| {
         let values = columns.iter().map(|c| (c.value)(summary, p));
         std::iter::once(p.policy.to_owned()).chain(values).collect()
@@ -112,23 +78,24 @@ fn table(summary: &Summary, columns: &[&Column]) -> String {
     text::table(&headings, &rows)
 }
 
-fn notes(s: &Summary) -> String {
-    let mut text = format!("{}\n", budget_note(s));
+/// What to make of it, a sentence or two each.
+pub fn notes(s: &Summary) -> Vec<String> {
+    let mut notes = vec![budget_note(s)];
     if !s.path_breaks.is_empty() {
-        text += &format!("{}\n", break_note(&s.path_breaks));
+        notes.push(break_note(&s.path_breaks));
     }
     if let Some(scale) = s.policies.iter().find_map(|p| p.scale) {
-        text +=
-            &format!("In hindsight, static multiplies every size by {}.\n", significant(f64::from(scale), 3));
+        let scale = significant(f64::from(scale), 3);
+        notes.push(format!("In hindsight, static multiplies every size by {scale}."));
     }
     if s.policies.iter().filter(|p| p.competes()).count() > 1 {
-        text += &format!("Best in {}.\n", best_note(&s.policies));
+        notes.push(format!("Best in {}.", best_note(&s.policies)));
     }
-    text
+    notes
 }
 
 /// In how many frames the budget cannot be met, and by how much.
-pub fn budget_note(s: &Summary) -> String {
+fn budget_note(s: &Summary) -> String {
     match s.infeasible_frames {
         0 => "The budget can be met in every frame.".to_owned(),
         frames => format!(
@@ -142,25 +109,26 @@ pub fn budget_note(s: &Summary) -> String {
 }
 
 /// Where the camera was held because no motion connects two poses.
-pub fn break_note(breaks: &[Break]) -> String {
-    let of_kind = |kind, name| {
+fn break_note(breaks: &[Break]) -> String {
+    let widest = |kind, name, width: fn(&Break) -> f64, unit| {
         let found: Vec<&Break> = breaks.iter().filter(|b| b.kind == kind).collect();
-        let first = found.first()?;
-        let longest = found.iter().map(|b| b.duration_s).fold(0.0, f64::max);
-        let farthest = found.iter().map(|b| b.distance).fold(0.0, f64::max);
+        let widest = found.iter().map(|b| width(b)).fold(0.0, f64::max);
+        let first_s = found.first()?.time_s;
         Some(format!(
-            "{} (first at {:.1} s, longest {longest:.1} s, farthest {farthest:.1} m)",
-            counted(found.len(), name),
-            first.time_s
+            "{} (the first at {first_s:.1} s, the widest {widest:.1} {unit})",
+            counted(found.len(), name)
         ))
     };
-    let kinds = [of_kind(BreakKind::Gap, "gap"), of_kind(BreakKind::Jump, "jump")];
-    let kinds: Vec<String> = kinds.into_iter().flatten().collect();
+    let gaps = widest(BreakKind::Gap, "gap", |b| b.duration_s, "s");
+    let jumps = widest(BreakKind::Jump, "jump", |b| b.distance, "units");
+    let kinds: Vec<String> = gaps.into_iter().chain(jumps).collect();
     format!("The path has {}; the camera waits before each.", kinds.join(" and "))
 }
 
-/// What policies can be best in: lower is better.
-const CONTESTS: [(&str, fn(&PolicyRow) -> f64); 5] = [
+/// What policies can be best in, and how it is scored: lower is better.
+type Contest = (&'static str, fn(&PolicyRow) -> f64);
+
+const CONTESTS: [Contest; 5] = [
     ("tracking", |p| p.metrics.tracking_over_budget),
     ("misses", |p| p.metrics.missed),
     ("longest frame", |p| p.metrics.max_over_budget),
@@ -169,8 +137,8 @@ const CONTESTS: [(&str, fn(&PolicyRow) -> f64); 5] = [
 ];
 
 /// Who was best in what, the ends of the scale left out.
-pub fn best_note(policies: &[PolicyRow]) -> String {
-    let best = |(name, score): (&str, fn(&PolicyRow) -> f64)| {
+fn best_note(policies: &[PolicyRow]) -> String {
+    let best = |(name, score): Contest| {
         let competing = || policies.iter().filter(|p| p.competes());
         let least = competing().map(score).fold(f64::INFINITY, f64::min);
         let winners: Vec<&str> = competing().filter(|p| score(p) <= least).map(|p| p.policy).collect();

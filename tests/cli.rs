@@ -1,0 +1,577 @@
+//! The `lod` command from outside: what it prints, what it writes, what it refuses.
+#![cfg(feature = "cli")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use lod_budget::files::{CameraPath, Scene};
+use lod_budget::knapsack::{Instance, exact, greedy};
+use lod_budget::sim::generate::{Recipe, scatter};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A folder that the command runs in.
+struct Room(TempDir);
+
+impl Room {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("a folder"))
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn put(&self, name: &str, contents: impl AsRef<[u8]>) -> &Self {
+        fs::write(self.path(name), contents).expect("written");
+        self
+    }
+
+    fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).expect(name)
+    }
+
+    fn command(&self, line: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_lod"));
+        command.current_dir(self.0.path()).args(line.split_whitespace());
+        command
+    }
+
+    fn run(&self, line: &str) -> Output {
+        self.command(line).output().expect("it runs")
+    }
+
+    /// Standard output of a run that must do.
+    fn done(&self, line: &str) -> String {
+        let output = self.run(line);
+        assert!(output.status.success(), "lod {line}: {}", text(&output.stderr));
+        assert_eq!(text(&output.stderr), "", "lod {line}");
+        text(&output.stdout)
+    }
+
+    /// The one object that a run prints.
+    fn json(&self, line: &str) -> Value {
+        let value: Value = serde_json::from_str(&self.done(line)).expect(line);
+        assert!(value.is_object(), "lod {line}");
+        value
+    }
+
+    /// A run that must be refused with status 2, nothing on standard output, and one line that has all these words.
+    fn refused(&self, line: &str, words: &[&str]) {
+        let output = self.run(line);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "lod {line}: {message}");
+        assert_eq!(text(&output.stdout), "", "lod {line}");
+        assert!(message.starts_with("lod: ") && message.lines().count() == 1, "lod {line}: {message}");
+        assert!(words.iter().all(|word| message.contains(word)), "lod {line}: {message}");
+    }
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("UTF-8")
+}
+
+const PATH: &str = "time_s,x,y,z,qx,qy,qz,qw\n0,0,2,30,0,0,0,1\n0.1,0,2,28,0,0,0,1\n0.3,0,2,20,0,0,0,1\n";
+
+/// A room with a scene of 60 objects, `yard.json`, and a path of 19 frames, `yard.csv`.
+fn yard() -> Room {
+    let room = Room::new();
+    let scene = Scene { name: "yard".into(), ..scatter(60, 1) };
+    room.put("yard.json", scene.to_json().expect("a good scene")).put("yard.csv", PATH);
+    room
+}
+
+/// Two nodes that share a mesh of `triangles` triangles, without levels.
+fn gltf(triangles: u32) -> String {
+    format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0, 1]}}],
+        "nodes": [{{"mesh": 0, "name": "a"}}, {{"mesh": 0, "name": "b", "translation": [3, 0, 0]}}],
+        "meshes": [{{"name": "rock", "primitives": [{{"attributes": {{"POSITION": 0}}}}]}}],
+        "accessors": [{{"componentType": 5126, "count": {}, "type": "VEC3", "min": [-1, -1, -1], "max": [1, 1, 1]}}]}}"#,
+        3 * triangles
+    )
+}
+
+#[test]
+fn every_command_says_how_it_is_used() {
+    let room = Room::new();
+    assert_eq!(room.done("--version"), concat!("lod ", env!("CARGO_PKG_VERSION"), "\n"));
+    for command in ["", "compare", "inspect", "solve", "generate"] {
+        let help = room.done(&format!("{command} --help"));
+        let examples = help.split("Examples:\n").nth(1).unwrap_or_else(|| panic!("{command}: {help}"));
+        assert!(examples.contains(&format!("lod {command}")), "{help}");
+        assert!(!help.contains('\x1b'), "colours in a pipe: {help}");
+    }
+    let nothing = room.run("");
+    assert_eq!((nothing.status.code(), nothing.stdout.len()), (Some(2), 0));
+    assert!(text(&nothing.stderr).contains("compare"));
+}
+
+#[test]
+fn usage_that_makes_no_sense_is_one_line() {
+    let room = yard();
+    room.refused("paint", &["paint"]);
+    room.refused("solve", &["INSTANCE"]);
+    room.refused("compare yard.json --colour", &["--colour"]);
+    room.refused("compare yard.json --policies static,fastest", &["fastest", "predictive"]);
+    room.refused("compare yard.json --machine fast", &["fast", "--machine"]);
+    room.refused("compare yard.json --budget-ms -3", &["-3", "--budget-ms", "positive"]);
+    room.refused("compare yard.json --budget-ms 0", &["--budget-ms", "positive"]);
+    room.refused("compare yard.json --budget-ms NaN", &["--budget-ms", "positive"]);
+    room.refused("compare yard.json --budget-ms inf", &["--budget-ms", "positive"]);
+    room.refused("compare yard.json --seed -1", &["--seed"]);
+    for viewport in ["1920", "1920x", "0x1080", "-1x5", "1920x1080x3", "1e3x1e3", "99999999x1"] {
+        room.refused(&format!("compare yard.json --viewport={viewport}"), &["--viewport", "1920x1080"]);
+    }
+    room.refused("compare yard.json --fps 0", &["yard.json", "fps", "positive"]);
+    room.refused("compare yard.json --fps -60", &["fps"]);
+    room.refused("compare yard.json --fps 1e9", &["fps", "1000000"]);
+    room.refused("compare yard.json --fov 180", &["fov", "180"]);
+    room.refused("compare yard.json --fov NaN", &["fov"]);
+    room.refused("compare yard.json --near 0", &["near"]);
+    room.refused("compare yard.json --near 5 --far 2", &["near", "far"]);
+    room.refused("compare yard.json --assume-levels 0", &["levels to assume", "0"]);
+    room.refused("compare yard.json --assume-levels 999", &["levels to assume", "999"]);
+    room.refused("generate building --objects 5", &["--objects", "scatter"]);
+    room.refused("generate scatter --objects -5", &["--objects", "-5"]);
+    room.refused("generate castle", &["castle", "building"]);
+    room.refused("solve x.json --limit-s 5", &["--exact"]);
+    room.refused("solve x.json --exact --limit-s -5", &["--limit-s", "-5"]);
+}
+
+#[test]
+fn files_that_are_no_good_are_named() {
+    let room = yard();
+    let scene = room.read("yard.json");
+    let table_gone = scene.replacen(r#""table":"scatter "#, r#""table":"lost "#, 1);
+    room.put("cut.json", &scene[..scene.len() / 2])
+        .put("lost.json", table_gone)
+        .put("cut.gltf", &gltf(8)[..200])
+        .put("cut.glb", b"glTF\x02\0\0\0\xff\xff\0\0\x10\0\0\0JSON{}")
+        .put("lone.gltf", gltf(8))
+        .put("nan.csv", PATH.replace("28", "NaN"))
+        .put("back.csv", PATH.replace("0.3", "0.05"))
+        .put("word.csv", PATH.replace("28", "far"))
+        .put("empty.csv", "")
+        .put("long.csv", PATH.replace("0.3", "1e12"))
+        .put("scene.obj", "v 0 0 0");
+    for command in ["compare", "inspect"] {
+        room.refused(&format!("{command} gone.json"), &["gone.json: it cannot be read"]);
+        room.refused(&format!("{command} cut.json"), &["cut.json: line", "EOF"]);
+        room.refused(&format!("{command} lost.json"), &["lost.json: object 0: its table 'lost "]);
+        room.refused(&format!("{command} cut.gltf"), &["cut.gltf: "]);
+        room.refused(&format!("{command} cut.glb"), &["cut.glb: "]);
+        room.refused(&format!("{command} scene.obj"), &["scene.obj", ".glb"]);
+        room.refused(&format!("{command} ."), &[".: "]);
+    }
+    for read in ["inspect", "compare yard.json --path"] {
+        room.refused(&format!("{read} nan.csv"), &["nan.csv: line 3: its numbers must be finite"]);
+        room.refused(&format!("{read} back.csv"), &["back.csv: line 4", "0.05"]);
+        room.refused(&format!("{read} word.csv"), &["word.csv: line 3", "'far'"]);
+        room.refused(&format!("{read} empty.csv"), &["empty.csv: "]);
+        room.refused(&format!("{read} gone.csv"), &["gone.csv: it cannot be read"]);
+    }
+    room.refused("compare lone.gltf", &["lone.gltf", "lone.csv", "--path"]);
+    room.refused("compare yard.json --path long.csv", &["1000000 frames"]);
+    room.refused("compare castle", &["castle"]);
+}
+
+#[test]
+fn what_cannot_be_written_is_named_and_leaves_nothing() {
+    let room = yard();
+    room.put("taken", "a file");
+    room.refused("generate scatter --objects 3 --out taken", &["taken: it cannot be made"]);
+    room.refused("compare yard.json --policies coarsest --out taken", &["taken: it cannot be made"]);
+    fs::create_dir_all(room.path("out/scatter.json")).expect("a folder in the way");
+    room.refused("generate scatter --objects 3 --out out", &["scatter.json: it cannot be written"]);
+    assert_eq!(fs::read_dir(room.path("out")).expect("there").count(), 1);
+}
+
+/// Funkhouser and Séquin's rule ends at 35.17 here.
+const COUNTEREXAMPLE: &str = r#"{"budget": 346.8607, "classes": [
+    [[0.1136, 0.4652], [1.7599, 5.0387], [18.8952, 34.5056], [346.7490, 618.5195]],
+    [[0.1086, 0.3795], [0.3057, 0.6621], [5.2287, 2.1120], [21.4700, 6.1775]]]}"#;
+
+/// Items with no order in them, so that the optimum is work to prove.
+fn tangled(classes: u64) -> String {
+    let number = |seed: u64| 1 + seed.wrapping_mul(6_364_136_223_846_793_005).rotate_left(21) % 9973;
+    let item = |c: u64, i: u64| format!("[{}, {}]", i * number(7 * c + i), i * number(7 * c + i) + 40 * i);
+    let class = |c| format!("[{}]", (0..4).map(|i| item(c, i)).collect::<Vec<_>>().join(", "));
+    let all: Vec<String> = (0..classes).map(class).collect();
+    format!(r#"{{"budget": {}, "classes": [{}]}}"#, classes * 7919, all.join(", "))
+}
+
+#[test]
+fn a_knapsack_is_solved_and_its_answer_is_the_librarys() {
+    let room = Room::new();
+    room.put("two.json", COUNTEREXAMPLE).put("many.json", tangled(12));
+    let quick = room.json("solve two.json --json");
+    assert_eq!(quick["choice"], serde_json::json!([3, 0]));
+    assert!((quick["benefit"].as_f64().expect("a number") - 618.90).abs() < 0.005);
+    let proved = room.json("solve two.json --exact --json");
+    assert_eq!((&proved["optimal"], &proved["gap"]), (&Value::Bool(true), &serde_json::json!(0.0)));
+    for key in ["choice", "cost", "benefit", "upper_bound", "gap", "feasible", "optimal", "shortfall"] {
+        assert!(proved.get(key).is_some_and(|v| !v.is_null()), "{key}");
+    }
+    let instance = Instance::from_json(&tangled(12)).expect("a good instance");
+    let (fast, best) = (greedy(&instance), exact(&instance, &mut || false));
+    assert_eq!(room.json("solve many.json --json")["benefit"], fast.benefit);
+    assert_eq!(room.json("solve many.json --exact --json")["choice"], serde_json::json!(best.choice));
+    let words = room.done("solve two.json --exact");
+    assert!(
+        words.contains("618.899") && words.contains("optimal, proved") && words.contains("3 0"),
+        "{words}"
+    );
+}
+
+#[test]
+fn a_search_that_is_cut_short_says_so() {
+    let room = Room::new();
+    room.put("many.json", tangled(200));
+    let cut = room.json("solve many.json --exact --limit-s 0 --json");
+    assert_eq!((&cut["optimal"], &cut["feasible"]), (&Value::Bool(false), &Value::Bool(true)));
+    assert!(cut["upper_bound"].as_f64() > cut["benefit"].as_f64());
+    assert!(cut["gap"].as_f64() > Some(0.0));
+}
+
+#[test]
+fn infeasible_and_empty_instances_have_answers() {
+    let room = Room::new();
+    room.put("poor.json", r#"{"budget": 1, "classes": [[[3, 9], [2, 1]], [[0.5, 0]]]}"#);
+    room.put("none.json", r#"{"budget": 0, "classes": []}"#);
+    let poor = room.json("solve poor.json --json");
+    assert_eq!(poor["choice"], serde_json::json!([1, 0]));
+    assert_eq!((&poor["feasible"], poor["shortfall"].as_f64()), (&Value::Bool(false), Some(1.5)));
+    assert!(poor["upper_bound"].is_null() && poor["gap"].is_null());
+    assert!(room.done("solve poor.json --exact").contains("exceeds the budget by 1.5"));
+    let none = room.json("solve none.json --exact --json");
+    assert_eq!((&none["choice"], &none["gap"]), (&serde_json::json!([]), &serde_json::json!(0.0)));
+    assert_eq!((&none["feasible"], &none["optimal"]), (&Value::Bool(true), &Value::Bool(true)));
+}
+
+#[test]
+fn instances_that_are_no_good_are_named() {
+    let room = Room::new();
+    let instance =
+        |budget: &str, item: &str| format!(r#"{{"budget": {budget}, "classes": [[[1, 1]], [{item}]]}}"#);
+    for (contents, words) in [
+        (instance("1", "[-1, 1]"), &["class 1, item 0", "cost", "-1"][..]),
+        (instance("1", "[1, -1]"), &["class 1, item 0", "benefit", "-1"]),
+        (instance("1", "[NaN, 1]"), &["class 1, item 0"]),
+        (instance("1", "[1e999, 1]"), &["class 1, item 0"]),
+        (instance("-5", "[1, 1]"), &["budget", "-5"]),
+        (instance("1", ""), &["class 1", "empty"]),
+        (instance("1", "[1, 1]")[..40].to_owned(), &["EOF"]),
+        (String::new(), &["EOF"]),
+        ("\u{feff}[]".to_owned(), &["line 1"]),
+    ] {
+        room.put("a.json", &contents);
+        let all: Vec<&str> = words.iter().copied().chain(["a.json: "]).collect();
+        room.refused("solve a.json", &all);
+    }
+    room.put("a.json", b"{\"budget\": \xff\xff}");
+    room.refused("solve a.json", &["a.json", "UTF-8"]);
+    room.refused("solve gone.json", &["gone.json: it cannot be read"]);
+    room.put("a.json", instance("1", "[-1, 1]"));
+    room.refused("inspect a.json", &["a.json", "class 1, item 0", "-1"]);
+}
+
+#[test]
+fn an_instance_comes_from_standard_input_as_well() {
+    let ask = |input: &str| {
+        let mut command = Room::new().command("solve - --json");
+        let mut child = command
+            .current_dir("/")
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("it runs");
+        child.stdin.take().expect("a pipe").write_all(input.as_bytes()).expect("written");
+        child.wait_with_output().expect("it ends")
+    };
+    let answer: Value = serde_json::from_slice(&ask(COUNTEREXAMPLE).stdout).expect("an object");
+    assert_eq!(answer["choice"], serde_json::json!([3, 0]));
+    let refused = ask("{");
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).starts_with("lod: standard input: "), "{}", text(&refused.stderr));
+}
+
+/// The output is larger than a pipe, so that it is cut while it is written.
+#[test]
+fn a_reader_that_has_seen_enough_is_no_error() {
+    let room = Room::new();
+    room.put("large.json", tangled(60_000));
+    let mut command = room.command("solve large.json --json");
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("it ends");
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", text(&output.stderr));
+    assert!(room.done("solve large.json --json").len() > 1 << 16);
+}
+
+#[test]
+fn scenes_paths_and_instances_are_inspected() {
+    let room = yard();
+    room.put("two.json", COUNTEREXAMPLE)
+        .put("rock.gltf", gltf(40))
+        .put("drive.txt", "5 0 0 0 0 0 0 1\n6 1 0 0 0 0 0 1\n");
+    let scene = room.json("inspect yard.json --json");
+    assert_eq!((&scene["kind"], scene["objects"].as_u64()), (&Value::from("scene"), Some(60)));
+    assert_eq!(scene["file"], "yard.json");
+    let mesh = room.json("inspect rock.gltf --json");
+    assert_eq!((mesh["objects"].as_u64(), mesh["finest"]["triangles"].as_u64()), (Some(2), Some(80)));
+    let path = room.json("inspect yard.csv --json");
+    assert_eq!((&path["kind"], path["poses"].as_u64()), (&Value::from("path"), Some(3)));
+    let instance = room.json("inspect two.json --json");
+    assert_eq!((&instance["kind"], instance["items"].as_u64()), (&Value::from("instance"), Some(8)));
+    assert_eq!((&instance["feasible"], instance["budget"].as_f64()), (&Value::Bool(true), Some(346.8607)));
+    assert!(room.done("inspect yard.json").contains("60"));
+    assert!(room.done("inspect rock.gltf").contains("80 triangles"));
+    assert!(room.done("inspect drive.txt").contains("1.000 s from 5 s on"));
+    assert!(room.done("inspect two.json").contains("2 classes, 8 items"));
+}
+
+#[test]
+fn generated_scenes_are_the_generators() {
+    let room = Room::new();
+    let said = room.done("generate building --out new/folder");
+    assert!(said.contains("2322 objects") && said.contains("building.csv"), "{said}");
+    let bundled = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    for name in ["building.json", "building.csv"] {
+        let written = fs::read(room.path("new/folder").join(name)).expect(name);
+        assert!(written == fs::read(bundled.join(name)).expect(name), "{name} differs");
+    }
+    let scattered = room.json("generate scatter --objects 40 --seed 9 --json");
+    assert_eq!((scattered["objects"].as_u64(), scattered["seed"].as_u64()), (Some(40), Some(9)));
+    let scene = Scene::read(&room.path("scatter.json")).expect("a scene");
+    assert_eq!(scene, scatter(40, 9));
+    assert_eq!(CameraPath::read(&room.path("scatter.csv")).expect("a path").duration_s().round(), 30.0);
+    room.done("generate city --seed 3");
+    assert_eq!(Scene::read(&room.path("city.json")).expect("a scene"), Recipe::City.scene(3));
+}
+
+/// Every key that is relied upon, and the keys of `frame_ms`.
+const POLICY_KEYS: [&str; 12] = [
+    "policy",
+    "frame_ms",
+    "std_over_budget",
+    "tracking_over_budget",
+    "max_over_budget",
+    "missed",
+    "infeasible",
+    "budget_used",
+    "gain_over_bound",
+    "switches_per_object_second",
+    "reversals_per_object_second",
+    "visible_mean",
+];
+const FRAME_KEYS: [&str; 6] = ["mean", "std", "p50", "p95", "p99", "max"];
+const NAMES: [&str; 7] =
+    ["coarsest", "finest", "static-default", "static", "reactive", "funkhouser-sequin", "predictive"];
+
+#[test]
+fn a_comparison_has_every_key() {
+    let room = yard();
+    let all = room.json("compare yard.json --json");
+    assert_eq!(
+        (&all["scene"], &all["path"], &all["machine"]),
+        (&"yard".into(), &"yard".into(), &"default".into())
+    );
+    assert_eq!((all["frames"].as_u64(), all["seed"].as_u64()), (Some(19), Some(1)));
+    assert!(all["budget_ms"].as_f64() > Some(0.0));
+    assert_eq!((all["assumed_tables"].as_u64(), &all["assume_levels"]), (Some(0), &Value::Null));
+    assert!(all["shortfall_ms"]["mean"].is_f64() && all["shortfall_ms"]["max"].is_f64());
+    for model in ["prior", "true"] {
+        assert!(all["cost_model"][model]["triangle_us"].as_f64() > Some(0.0), "{model}");
+    }
+    let policies = all["policies"].as_array().expect("a list");
+    assert_eq!(policies.iter().map(|p| p["policy"].as_str().expect("a name")).collect::<Vec<_>>(), NAMES);
+    for policy in policies {
+        for key in &POLICY_KEYS[2..] {
+            assert!(policy[key].is_f64(), "{key} of {policy}");
+        }
+        for key in FRAME_KEYS {
+            assert!(policy["frame_ms"][key].as_f64() > Some(0.0) || key == "std", "{key} of {policy}");
+        }
+        assert_eq!(policy.get("scale").is_some(), policy["policy"] == "static");
+    }
+    let mean = |i: usize| policies[i]["frame_ms"]["mean"].as_f64().expect("a number");
+    assert!((2..7).all(|i| mean(i) < mean(1) * 1.0001 && mean(i) > mean(0) * 0.9999));
+}
+
+#[test]
+fn the_same_comparison_prints_the_same() {
+    let room = yard();
+    let line = "compare yard.json --seed 7 --json";
+    assert_eq!(room.done(line), room.done(line));
+    assert_ne!(room.json(line)["policies"], room.json("compare yard.json --seed 8 --json")["policies"]);
+}
+
+#[test]
+fn a_comparison_is_on_what_was_asked_for() {
+    let room = yard();
+    room.put("still.csv", "time_s,x,y,z,qx,qy,qz,qw\n5,0,2,30,0,0,0,1\n");
+    let few = room.json(
+        "compare yard.json --path still.csv --policies predictive,finest,predictive --machine ideal --budget-ms 0.5 --json",
+    );
+    let names: Vec<&str> =
+        few["policies"].as_array().expect("a list").iter().filter_map(|p| p["policy"].as_str()).collect();
+    assert_eq!(names, ["predictive", "finest"]);
+    assert_eq!((few["frames"].as_u64(), few["budget_ms"].as_f64()), (Some(1), Some(0.5)));
+    assert_eq!((&few["machine"], &few["path"]), (&"ideal".into(), &"still".into()));
+    assert_eq!(few["cost_model"]["prior"], few["cost_model"]["true"]);
+    let half = room.json("compare yard.json --fps 30 --policies coarsest --json");
+    assert_eq!(half["frames"].as_u64(), Some(10));
+    let small = room.json("compare yard.json --viewport 320x200 --policies coarsest --json");
+    let time = |v: &Value| v["policies"][0]["frame_ms"]["mean"].as_f64().expect("a number");
+    assert!(time(&small) < time(&half));
+}
+
+#[test]
+fn a_budget_that_cannot_be_met_is_reported() {
+    let room = yard();
+    let poor = room.json("compare yard.json --budget-ms 0.0001 --policies predictive --json");
+    assert_eq!(poor["policies"][0]["infeasible"].as_f64(), Some(1.0));
+    assert_eq!(poor["infeasible_frames"].as_u64(), Some(19));
+    let (mean, max) = (poor["shortfall_ms"]["mean"].as_f64(), poor["shortfall_ms"]["max"].as_f64());
+    assert!(mean > Some(0.0) && max >= mean);
+    let words = room.done("compare yard.json --budget-ms 0.0001 --policies predictive --out out");
+    let plot = room.read("out/time_over_budget.svg");
+    let lines = plot.lines().filter(|line| line.starts_with("<polyline") && line.contains("#0072B2"));
+    assert_eq!(lines.count(), 2, "the policy's line and its legend");
+    assert!(words.contains("In 19 frames (100.0 %) the coarsest levels alone exceed the budget"), "{words}");
+}
+
+#[test]
+fn a_comparison_in_words_has_a_row_per_policy() {
+    let room = yard();
+    let words = room.done("compare yard.json");
+    for name in NAMES {
+        assert_eq!(words.lines().filter(|l| l.starts_with(&format!("{name} "))).count(), 1, "{words}");
+    }
+    for expected in ["60 objects", "19 frames at 60 Hz", "seed 1", "ms", "% budget", "Best in tracking: "] {
+        assert!(words.contains(expected), "{expected}: {words}");
+    }
+    assert!(!words.contains('\x1b') && !words.contains("ASSUMED"), "{words}");
+}
+
+#[test]
+fn assumed_levels_are_owned_up_to_everywhere() {
+    let room = Room::new();
+    room.put("rock.gltf", gltf(400))
+        .put("drive.csv", PATH.replace("30", "9").replace("28", "8").replace("20", "7"));
+    let line = "compare rock.gltf --path drive.csv --assume-levels 3 --policies finest,predictive --out out";
+    assert!(room.done(line).contains("levels ASSUMED, up to 3, for 1 table without levels"));
+    let json: Value = serde_json::from_str(&room.read("out/comparison.json")).expect("an object");
+    assert_eq!((json["assume_levels"].as_u64(), json["assumed_tables"].as_u64()), (Some(3), Some(1)));
+    assert!(room.read("out/report.html").contains("levels ASSUMED"));
+    assert!(room.read("out/frames.csv").lines().skip(1).all(|l| l.ends_with(",1")));
+    for plot in ["frame_time", "time_over_budget", "gain_over_bound"] {
+        assert!(room.read(&format!("out/{plot}.svg")).contains("levels assumed"), "{plot}");
+    }
+    assert_eq!(
+        room.json(&format!("{line} --json"))["policies"][1]["gain_over_bound"].as_f64().map(f64::signum),
+        Some(1.0)
+    );
+}
+
+#[test]
+fn a_report_is_whole_and_needs_nothing_else() {
+    let room = yard();
+    let printed = room.json("compare yard.json --out deep/report --json");
+    let written: Value = serde_json::from_str(&room.read("deep/report/comparison.json")).expect("an object");
+    assert_eq!(printed, written);
+    let page = room.read("deep/report/report.html");
+    assert_eq!(page.matches("<svg").count(), 3);
+    for outside in ["<script", "<link", "<img", "src=", "@import", "url("] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    for name in NAMES {
+        assert!(page.contains(&format!("<td>{name}</td>")), "{name}");
+    }
+    let files =
+        fs::read_dir(room.path("deep/report")).expect("there").map(|f| f.expect("a file").file_name());
+    let mut files: Vec<_> = files.collect();
+    files.sort();
+    let expected = [
+        "comparison.json",
+        "frame_time.svg",
+        "frames.csv",
+        "gain_over_bound.svg",
+        "report.html",
+        "time_over_budget.svg",
+    ];
+    assert_eq!(files, expected);
+}
+
+#[test]
+fn the_frames_add_up_to_the_summary() {
+    let room = yard();
+    let summary = room.json("compare yard.json --out out --json");
+    let csv = room.read("out/frames.csv");
+    let mut lines = csv.lines();
+    let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    let place = |name: &str| header.iter().position(|column| *column == name).expect("a column");
+    let mut sums: BTreeMap<&str, (f64, u32)> = BTreeMap::new();
+    for line in lines {
+        let fields: Vec<&str> = line.split(',').collect();
+        assert_eq!(fields.len(), header.len(), "{line}");
+        let sum = sums.entry(fields[place("policy")]).or_default();
+        sum.0 += fields[place("frame_ms")].parse::<f64>().expect("a number");
+        sum.1 += 1;
+    }
+    assert_eq!(sums.len(), NAMES.len());
+    for policy in summary["policies"].as_array().expect("a list") {
+        let (sum, frames) = sums[policy["policy"].as_str().expect("a name")];
+        let mean = policy["frame_ms"]["mean"].as_f64().expect("a number");
+        assert_eq!(frames, 19);
+        assert!((sum / 19.0 - mean).abs() < 1e-6, "{policy}");
+    }
+}
+
+#[test]
+fn plots_stay_small_however_long_the_path_is() {
+    let room = yard();
+    room.put("long.csv", PATH.replace("0.3", "90"));
+    room.done("compare yard.json --path long.csv --policies coarsest,static-default,predictive --out out");
+    assert_eq!(room.read("out/frames.csv").lines().count(), 1 + 3 * 5401);
+    for plot in ["frame_time", "time_over_budget", "gain_over_bound"] {
+        assert!(room.read(&format!("out/{plot}.svg")).len() < 200_000, "{plot}");
+    }
+}
+
+#[test]
+fn a_scene_cannot_write_on_the_page_or_steer_the_terminal() {
+    let room = yard();
+    let scene = room.read("yard.json").replacen("\"yard\"", r#""<script>alert(1)</script>\u001b[31m&""#, 1);
+    room.put("evil.json", scene).put("evil.csv", PATH);
+    let words = room.done("compare evil.json --policies coarsest --out out");
+    assert!(!words.contains('\x1b') && words.contains("\\u{1b}"), "{words}");
+    for file in ["report.html", "frame_time.svg", "time_over_budget.svg"] {
+        let page = room.read(&format!("out/{file}"));
+        assert!(
+            !page.contains("<script") && !page.contains('\x1b') && page.contains("&lt;script&gt;"),
+            "{file}"
+        );
+    }
+    assert!(!room.done("inspect evil.json").contains('\x1b'));
+}
+
+#[test]
+fn nothing_in_view_is_no_reason_to_fail() {
+    let room = Room::new();
+    let empty =
+        r#"{"format": "lod-budget scene", "version": 1, "name": "void", "tables": [], "objects": []}"#;
+    room.put("void.json", empty).put("void.csv", PATH);
+    let void = room.json("compare void.json --out out --json");
+    assert_eq!(void["frames"].as_u64(), Some(19));
+    for policy in void["policies"].as_array().expect("a list") {
+        assert_eq!(policy["visible_mean"].as_f64(), Some(0.0));
+        assert!(POLICY_KEYS[2..].iter().all(|key| policy[key].is_f64()), "{policy}");
+    }
+    assert!(room.read("out/report.html").contains("void"));
+}
