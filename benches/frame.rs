@@ -116,7 +116,7 @@ fn policies() -> [(&'static str, Box<dyn Selector>); 6] {
 
 fn group<'a>(c: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, WallTime> {
     let mut group = c.benchmark_group(name);
-    group.sample_size(10).nresamples(1000);
+    group.sample_size(10).nresamples(2000);
     group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_millis(500));
     group
 }

@@ -47,7 +47,7 @@ fn solvers(c: &mut Criterion) {
             [("greedy", greedy as fn(&Instance) -> _), ("exact", |i| exact(i, &mut || false))]
         {
             let mut group = c.benchmark_group(name);
-            group.sample_size(10).nresamples(1000);
+            group.sample_size(10).nresamples(2000);
             group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_secs(1));
             group.bench_function(BenchmarkId::from_parameter(classes), |b| {
                 b.iter(|| solve(black_box(&instance)))
