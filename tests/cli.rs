@@ -247,6 +247,8 @@ fn infeasible_and_empty_instances_have_answers() {
     assert_eq!((&poor["feasible"], poor["shortfall"].as_f64()), (&Value::Bool(false), Some(1.5)));
     assert!(poor["upper_bound"].is_null() && poor["gap"].is_null());
     assert!(room.done("solve poor.json --exact").contains("exceeds the budget by 1.5"));
+    assert!(room.done("inspect none.json").contains("0 to 0"));
+    assert!(!room.done("solve none.json --json").contains("-0"));
     let none = room.json("solve none.json --exact --json");
     assert_eq!((&none["choice"], &none["gap"]), (&serde_json::json!([]), &serde_json::json!(0.0)));
     assert_eq!((&none["feasible"], &none["optimal"]), (&Value::Bool(true), &Value::Bool(true)));
@@ -388,6 +390,7 @@ fn a_comparison_has_every_key() {
     for model in ["prior", "true"] {
         assert!(all["cost_model"][model]["triangle_us"].as_f64() > Some(0.0), "{model}");
     }
+    assert!(!room.done("compare yard.json --json").contains("-0.0"), "a zero is a zero");
     let policies = all["policies"].as_array().expect("a list");
     assert_eq!(policies.iter().map(|p| p["policy"].as_str().expect("a name")).collect::<Vec<_>>(), NAMES);
     for policy in policies {

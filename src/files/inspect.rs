@@ -186,8 +186,9 @@ impl InstanceInspection {
     /// What can be said of a knapsack.
     pub fn of(instance: &Instance) -> Self {
         let sizes = || instance.classes().map(<[Item]>::len);
-        let costs = |class: &[Item], worst: f64, pick: fn(f64, f64) -> f64| {
-            class.iter().map(|item| item.cost).fold(worst, pick)
+        let total = |worst: f64, pick: fn(f64, f64) -> f64| {
+            let cost = |class: &[Item]| class.iter().map(|item| item.cost).fold(worst, pick);
+            instance.classes().map(cost).fold(0.0, |sum, cost| sum + cost)
         };
         Self {
             budget: instance.budget(),
@@ -195,8 +196,8 @@ impl InstanceInspection {
             items: instance.items().len(),
             fewest_items: sizes().min().unwrap_or(0),
             most_items: sizes().max().unwrap_or(0),
-            least_cost: instance.classes().map(|class| costs(class, f64::INFINITY, f64::min)).sum(),
-            most_cost: instance.classes().map(|class| costs(class, 0.0, f64::max)).sum(),
+            least_cost: total(f64::INFINITY, f64::min),
+            most_cost: total(0.0, f64::max),
             feasible: greedy(instance).feasible,
         }
     }

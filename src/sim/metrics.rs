@@ -73,7 +73,8 @@ impl Metrics {
             missed: mean(&|r| fraction(r.time_us > MISS * allowed_us(r))),
             infeasible: mean(&|r| fraction(r.coarsest_us > budget_us)),
             budget_used: mean(&|r| r.predicted_us) / budget_us,
-            gain_over_bound: gains.iter().sum::<f64>() / gains.len().max(1) as f64,
+            // From 0.0 on, because the sum of nothing is −0.
+            gain_over_bound: gains.iter().fold(0.0, |sum, gain| sum + gain) / gains.len().max(1) as f64,
             switches_per_object_second: per_object_second(rows.iter().map(|r| r.switches).sum()),
             reversals_per_object_second: per_object_second(rows.iter().map(|r| r.reversals).sum()),
             visible_mean: mean(&|r| r.visible as f64),
