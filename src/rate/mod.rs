@@ -16,7 +16,7 @@ use glam::Vec3;
 
 use crate::cull::VisibleBlock;
 use crate::frame::{Candidate, Candidates};
-use crate::scene::{BLOCK, Block, LevelRange, Objects, Settings};
+use crate::scene::{BLOCK, Block, Objects, Settings};
 use crate::table::Level;
 use crate::view::Lens;
 

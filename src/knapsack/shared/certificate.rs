@@ -50,7 +50,7 @@ fn relative_gap(bound: f64, benefit: f64, least: f64) -> f64 {
 pub(super) struct Sums {
     lambda: f32,
     classes: usize,
-    /// Units of benefit per one: a power of two that gives the heaviest class 40 bits.
+    /// Units of benefit per one: a power of two that gives the heaviest class 56 bits.
     unit: f64,
     cost: u64,
     benefit: Worth,
@@ -61,7 +61,7 @@ pub(super) struct Sums {
     bound_premium: i128,
 }
 
-const WEIGHT_BITS: i32 = 40;
+const WEIGHT_BITS: i32 = 56;
 
 /// What the best positions at λ come to.
 #[derive(Default)]
@@ -174,7 +174,8 @@ fn best(
     }
     let position = reach(near, lambda, &slope);
     let close = |p: u8| (slope(p) - lambda).abs() <= lambda * NEAR;
-    if !close(position) && !(position > 0 && close(position - 1)) {
+    let doubtful = close(position) || position > 0 && close(position - 1);
+    if !doubtful {
         return position;
     }
     let surplus = |p: u8| benefit(p) - f64::from(lambda) * class.cost(p) as f64;
