@@ -1,7 +1,7 @@
 //! The frame loop's greedy against slow twins: the textbook's greedy, from scratch, and exhaustive search.
 
 use lod_budget::knapsack::{
-    Classes, Instance, Item, Outcome, Position, ProfileItem, Profiles, SharedKnapsack, exact,
+    Instance, Item, Outcome, Position, ProfileItem, Profiles, SharedClass, SharedKnapsack, exact,
 };
 use proptest::prelude::*;
 
@@ -39,12 +39,8 @@ fn fill(solver: &mut SharedKnapsack, classes: &[Class]) {
     solver.classes.clear();
     for class in classes {
         let profile = solver.profiles.push(&class.items);
-        let Classes { profile: profiles, weight, scale, current, stay } = &mut solver.classes;
-        profiles.push(profile);
-        weight.push(class.weight);
-        scale.push(class.scale);
-        current.push(class.current);
-        stay.push(class.stay);
+        let Class { weight, scale, stay, current, .. } = *class;
+        solver.classes.push(SharedClass { profile, weight, scale, stay, current });
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{Frame, Selector};
 use crate::frame::OptionsError;
 use crate::frame::{Cause, Certificate, SelectReport};
-use crate::knapsack::{Outcome, ProfileItem, SharedKnapsack};
+use crate::knapsack::{Outcome, ProfileItem, SharedClass, SharedKnapsack};
 use crate::rate::{Stages, TableRates};
 use crate::scene::LevelRange;
 use crate::table::Level;
@@ -82,48 +82,42 @@ impl Predictive {
 
     /// One class per candidate; returns the ticks that are spent whatever is chosen.
     fn fill_classes(&mut self, frame: &Frame<'_>) -> u64 {
-        self.knapsack.classes.clear();
-        let fixed = self.share_hulls(frame);
-        self.make_own_hulls(frame);
-        let candidates = frame.candidates;
-        let classes = &mut self.knapsack.classes;
-        classes.weight.extend_from_slice(&candidates.weight);
-        for i in 0..candidates.len() {
-            let own = classes.profile[i] >= self.hulls.shared_count;
-            classes.scale.push(if own { 1.0 } else { candidates.cost_scale[i] });
-            let previous = candidates.previous[i];
-            let held =
-                previous.map_or(0, |level| self.knapsack.profiles.position_of(classes.profile[i], level.0));
-            classes.current.push(held);
-            classes.stay.push(self.options.price(previous, candidates.age_ms[i]));
-        }
-        fixed
-    }
-
-    /// Gives every candidate the hull of its table and range; returns the ticks of their pixels. Candidates that need
-    /// a hull of their own are marked.
-    fn share_hulls(&mut self, frame: &Frame<'_>) -> u64 {
         let candidates = frame.candidates;
         let pixel_ticks = frame.model.pixel_us * self.hulls.ticks_per_us;
         let mut fixed = 0u64;
+        self.knapsack.classes.clear();
         for i in 0..candidates.len() {
             let (table, allowed) = (candidates.table[i], candidates.allowed[i]);
-            let profile = if has_own_hull(frame, i) {
+            let own = has_own_hull(frame, i);
+            let profile = if own {
                 OWN
             } else {
                 let pixels = ceil_ticks(pixel_ticks * f64::from(candidates.area_px2[i]));
                 fixed = pixels.saturating_add(fixed);
                 self.hulls.shared(table, allowed, frame.rates, &mut self.knapsack)
             };
-            self.knapsack.classes.profile.push(profile);
+            let previous = candidates.previous[i];
+            let held = previous.filter(|_| !own);
+            self.knapsack.classes.push(SharedClass {
+                profile,
+                weight: candidates.weight[i],
+                scale: if own { 1.0 } else { candidates.cost_scale[i] },
+                stay: self.options.price(previous, candidates.age_ms[i]),
+                current: held.map_or(0, |level| self.knapsack.profiles.position_of(profile, level.0)),
+            });
         }
+        self.make_own_hulls(frame);
         fixed
     }
 
+    /// Makes the hulls that are not shared, after all that are, and finds what is held on them.
     fn make_own_hulls(&mut self, frame: &Frame<'_>) {
         for i in 0..frame.candidates.len() {
-            if self.knapsack.classes.profile[i] == OWN {
-                self.knapsack.classes.profile[i] = self.hulls.own(frame, i, &mut self.knapsack);
+            if self.knapsack.classes[i].profile == OWN {
+                let profile = self.hulls.own(frame, i, &mut self.knapsack);
+                let held = |level: Level| self.knapsack.profiles.position_of(profile, level.0);
+                let current = frame.candidates.previous[i].map_or(0, held);
+                self.knapsack.classes[i] = SharedClass { profile, current, ..self.knapsack.classes[i] };
             }
         }
     }

@@ -3,6 +3,7 @@
 //!
 //! Sums are of integers, so the order of classes does not matter, and bounds are rounded outwards.
 
+use super::census::{Settled, fixed};
 use super::class::{Class, reach};
 use super::profiles::FRACTION_BITS;
 
@@ -50,8 +51,10 @@ fn relative_gap(bound: f64, benefit: f64, least: f64) -> f64 {
 pub(super) struct Sums {
     lambda: f32,
     classes: usize,
-    /// Units of benefit per one: a power of two that gives the heaviest class 56 bits.
+    /// Units of benefit per one.
     unit: f64,
+    /// Sum of all weights, in units.
+    weight: u128,
     cost: u64,
     benefit: Worth,
     minimum: Worth,
@@ -60,8 +63,6 @@ pub(super) struct Sums {
     priced_bound: Bound,
     bound_premium: i128,
 }
-
-const WEIGHT_BITS: i32 = 56;
 
 /// What the best positions at λ come to.
 #[derive(Default)]
@@ -97,12 +98,13 @@ impl Worth {
 const NEAR: f32 = 4e-7;
 
 impl Sums {
-    /// No class yet, of so many whose weights are at most `heaviest`.
-    pub fn new(lambda: f32, classes: usize, heaviest: f32) -> Self {
+    /// No class yet, of so many, with weights in `unit`s.
+    pub fn new(lambda: f32, classes: usize, unit: f64) -> Self {
         Self {
             lambda,
             classes,
-            unit: power_of_two(WEIGHT_BITS - exponent_of(heaviest)),
+            unit,
+            weight: 0,
             cost: 0,
             benefit: Worth::default(),
             minimum: Worth::default(),
@@ -115,7 +117,8 @@ impl Sums {
 
     /// Adds a class and its chosen position.
     pub fn add(&mut self, class: &Class<'_>, choice: u8) {
-        let weight = (f64::from(class.weight) * self.unit) as i64 as u64;
+        let weight = fixed(f64::from(class.weight) * self.unit);
+        self.weight += u128::from(weight);
         self.cost = self.cost.saturating_add(class.cost(choice));
         self.benefit.add(class, weight, choice);
         self.minimum.add(class, weight, 0);
@@ -134,11 +137,31 @@ impl Sums {
         self.priced_bound.add(class, weight, best);
     }
 
+    /// Adds settled classes: they are at the best position for every λ of the bracket, priced or not.
+    pub fn add_settled(&mut self, settled: &Settled<'_>) {
+        let Settled { positions, position, count } = *settled;
+        let worth = |p: usize| u128::from(positions[p].worth);
+        let (here, cost) = (Worth(count.weight * worth(position)), settled.cost(position));
+        self.weight += count.weight;
+        self.cost = self.cost.saturating_add(cost);
+        self.benefit.0 += here.0;
+        self.minimum.0 += count.weight * worth(0);
+        for bound in [&mut self.bound, &mut self.priced_bound] {
+            bound.worth.0 += here.0;
+            bound.cost = bound.cost.saturating_add(cost);
+        }
+        let kept = (count.kept * (worth(position) - worth(0))) >> FRACTION_BITS;
+        self.premium += kept as i128;
+        self.bound_premium += kept as i128;
+    }
+
     /// Bounds are widened by what rounding can hide: two units per class for weights and premiums, two ticks per class
-    /// for scaled costs, and the last places of the products.
+    /// for scaled costs, the last binary digit of every value, doubled where switching is priced, and the last places of
+    /// the products.
     pub fn outcome(&self, budget: u64) -> Outcome {
         let lambda = f64::from(self.lambda);
-        let hidden = self.classes as f64 * 2.0 * (lambda + 1.0 / self.unit);
+        let digits = 2.0 * self.weight as f64 / ((1u64 << FRACTION_BITS) as f64 * self.unit);
+        let hidden = self.classes as f64 * 2.0 * (lambda + 1.0 / self.unit) + digits;
         let bound = |benefit: f64, cost: u64| {
             let unspent = lambda * (budget as f64 - cost as f64);
             let widest = benefit.abs() + lambda * (budget as f64 + cost as f64);
@@ -180,14 +203,4 @@ fn best(
     }
     let surplus = |p: u8| benefit(p) - f64::from(lambda) * class.cost(p) as f64;
     (0..=class.last()).reduce(|best, p| if surplus(p) > surplus(best) { p } else { best }).unwrap_or(position)
-}
-
-/// The exponent of a power of two above `x`; 0 for 0.
-fn exponent_of(x: f32) -> i32 {
-    if x > 0.0 { (x.to_bits() >> 23) as i32 - 126 } else { 0 }
-}
-
-/// 2^`exponent`, for exponents of normal numbers.
-fn power_of_two(exponent: i32) -> f64 {
-    f64::from_bits(((1023 + exponent) as u64) << 52)
 }

@@ -1,12 +1,13 @@
 //! One class with its hull at hand: slopes, costs and how far a multiplier λ carries it.
 
-use super::Classes;
+use super::SharedClass;
 use super::profiles::{Position, Profiles};
 
 /// One class of a call.
 pub(super) struct Class<'a> {
     /// Its hull, cheapest first.
     pub positions: &'a [Position],
+    place: u32,
     pub weight: f32,
     pub scale: f32,
     /// Weight per scale: what turns the profile's slopes into the class's.
@@ -16,16 +17,22 @@ pub(super) struct Class<'a> {
 }
 
 impl<'a> Class<'a> {
-    pub fn new(profiles: &'a Profiles, classes: &Classes, i: usize) -> Self {
-        let (weight, scale) = (classes.weight[i], classes.scale[i]);
+    pub fn new(profiles: &'a Profiles, class: &SharedClass) -> Self {
+        let SharedClass { profile, weight, scale, current, stay } = *class;
         Self {
-            positions: profiles.positions(classes.profile[i]),
+            positions: profiles.positions(profile),
+            place: profiles.place(profile),
             weight,
             scale,
             rate: if scale == 1.0 { weight } else { weight / scale },
-            current: classes.current[i],
-            stay: classes.stay[i],
+            current,
+            stay,
         }
+    }
+
+    /// Where a position stands among those of all profiles.
+    pub fn place(&self, position: u8) -> usize {
+        self.place as usize + usize::from(position)
     }
 
     pub fn last(&self) -> u8 {

@@ -10,6 +10,7 @@
 //! beyond it (1 − stay) times. That keeps slopes falling along each hull, so the greedy and its bound hold for the
 //! priced objective; the certificate of the plain one is computed beside it.
 
+mod census;
 mod certificate;
 mod class;
 mod profiles;
@@ -17,44 +18,24 @@ mod profiles;
 pub use certificate::Outcome;
 pub use profiles::{Position, ProfileItem, Profiles};
 
+use census::{Census, Settled};
 use certificate::Sums;
 use class::{Class, scaled};
 use profiles::position_at;
 
-/// The classes of one call, column by column.
-#[derive(Clone, Debug, Default)]
-pub struct Classes {
+/// One class of a call.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SharedClass {
     /// Number of the profile in [`SharedKnapsack::profiles`].
-    pub profile: Vec<u32>,
+    pub profile: u32,
     /// Factor on the profile's values, finite and ≥ 0.
-    pub weight: Vec<f32>,
+    pub weight: f32,
     /// Factor on the profile's ticks, finite and > 0.
-    pub scale: Vec<f32>,
-    /// Position on the hull that the class holds now.
-    pub current: Vec<u8>,
+    pub scale: f32,
     /// Price of switching, in 0…1 (exclusive): 0 for none.
-    pub stay: Vec<f32>,
-}
-
-impl Classes {
-    /// Forgets all classes and keeps the memory.
-    pub fn clear(&mut self) {
-        self.profile.clear();
-        self.weight.clear();
-        self.scale.clear();
-        self.current.clear();
-        self.stay.clear();
-    }
-
-    /// How many classes there are.
-    pub fn len(&self) -> usize {
-        self.profile.len()
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.profile.is_empty()
-    }
+    pub stay: f32,
+    /// Position on the hull that the class holds now.
+    pub current: u8,
 }
 
 /// Solver with its scratch and the memory of the last λ. Fill `profiles` and `classes`, call
@@ -64,13 +45,17 @@ pub struct SharedKnapsack {
     /// The hulls.
     pub profiles: Profiles,
     /// The classes. Solving may change the profiles and current positions of classes; fill them anew for each call.
-    pub classes: Classes,
+    pub classes: Vec<SharedClass>,
     /// The answer: the code of the chosen item of each class.
     pub chosen: Vec<u8>,
     choice: Vec<u8>,
     bracket: Bracket,
     undecided: Vec<Undecided>,
-    blocked: Vec<bool>,
+    standing: Vec<Standing>,
+    census: Census,
+    /// Classes that have not settled, and the bracket that the others have settled in.
+    open: Vec<u32>,
+    surveyed: [f32; 2],
     histogram: Vec<u64>,
     rival: Vec<u8>,
     affordable: Vec<ProfileItem>,
@@ -87,6 +72,17 @@ impl Default for Bracket {
     fn default() -> Self {
         Self { lambda: 0.0, width: *WIDTH.start() }
     }
+}
+
+/// What a class may still do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Standing {
+    /// It may take steps.
+    Open,
+    /// It holds its position whatever λ in the bracket is, and is counted in the census.
+    Settled,
+    /// A step of it did not fit: it takes no later one.
+    Blocked,
 }
 
 /// A step inside the bracket.
@@ -113,6 +109,27 @@ struct Survey {
 }
 
 impl Survey {
+    fn add(&mut self, class: &Class<'_>, above: u8, down_to: u8) {
+        let (cheapest, best) = (class.cost(0), class.cost(class.last()));
+        self.cheapest = self.cheapest.saturating_add(cheapest);
+        self.best = self.best.saturating_add(best);
+        self.widest = self.widest.max(best - cheapest);
+        self.held = self.held.saturating_add(class.cost(class.held()));
+        self.above = self.above.saturating_add(class.cost(above));
+        self.down_to = self.down_to.saturating_add(class.cost(down_to));
+    }
+
+    fn add_settled(&mut self, settled: &Settled<'_>) {
+        let last = settled.positions.len() - 1;
+        let here = settled.cost(settled.position);
+        self.cheapest = self.cheapest.saturating_add(settled.cost(0));
+        self.best = self.best.saturating_add(settled.cost(last));
+        self.widest = self.widest.max(settled.positions[last].ticks - settled.positions[0].ticks);
+        for sum in [&mut self.held, &mut self.above, &mut self.down_to] {
+            *sum = sum.saturating_add(here);
+        }
+    }
+
     /// What to spend: what is held, held between `ease` and `budget`. Where a single item is too dear for that there is
     /// no dead band: it would keep the item out, and with it perhaps most of the benefit.
     fn target(&self, budget: u64, ease: u64) -> u64 {
@@ -152,6 +169,9 @@ const FILL_WINDOWS: [f32; 8] = [0.95, 0.8, 0.5, 0.2, 0.05, 0.01, 0.001, 0.0];
 /// The fill stops when less than this fraction of the budget is left: it would buy less than looking costs.
 const FILL_ENOUGH: u64 = 1 << 15;
 
+/// The bracket that no λ is in: nothing has settled.
+const NOTHING: [f32; 2] = [f32::INFINITY, 0.0];
+
 /// Above this relative gap the rival choice, critical step first, is tried as well.
 const RIVAL_GAP: f64 = 1e-3;
 
@@ -173,6 +193,8 @@ impl SharedKnapsack {
         let shared = self.profiles.len();
         self.choice.clear();
         self.choice.resize(self.classes.len(), 0);
+        self.chosen.clear();
+        self.chosen.resize(self.classes.len(), 0);
         let outcome = self.choose(budget, ease.min(budget), &key);
         self.profiles.truncate(shared);
         outcome
@@ -212,7 +234,7 @@ impl SharedKnapsack {
     }
 
     fn class(&self, i: usize) -> Class<'_> {
-        Class::new(&self.profiles, &self.classes, i)
+        Class::new(&self.profiles, &self.classes[i])
     }
 
     /// The bracket around the last λ; an empty one at the top when there is none.
@@ -226,13 +248,28 @@ impl SharedKnapsack {
     }
 
     /// One pass: every class takes its steps at or above the bracket's upper end into `choice`, its steps inside go to
-    /// `undecided`, and the costs are summed.
-    fn survey(&mut self, [low, high]: [f32; 2], pin: Option<Pin>) -> Survey {
+    /// `undecided`, and the costs are summed. Classes with nothing to decide settle.
+    fn survey(&mut self, bracket: [f32; 2], pin: Option<Pin>) -> Survey {
+        let [low, high] = bracket;
         let mut survey = Survey { low, ..Survey::default() };
+        self.surveyed = bracket;
         self.undecided.clear();
-        for i in 0..self.classes.len() {
-            let class = Class::new(&self.profiles, &self.classes, i);
-            let (above, down_to) = match pin.filter(|p| p.class == i) {
+        self.open.clear();
+        self.standing.clear();
+        self.standing.resize(self.classes.len(), Standing::Open);
+        self.census.begin(&self.profiles, &self.classes);
+        for (i, class) in self.classes.iter().enumerate() {
+            let class = Class::new(&self.profiles, class);
+            let pinned = pin.filter(|p| p.class == i);
+            if pinned.is_none() && self.census.settles(&class, bracket) {
+                let held = class.held();
+                self.standing[i] = Standing::Settled;
+                self.choice[i] = held;
+                self.chosen[i] = class.positions[usize::from(held)].item;
+                continue;
+            }
+            self.open.push(i as u32);
+            let (above, down_to) = match pinned {
                 Some(pin) => (pin.position, pin.position),
                 None => {
                     let above = class.reach(class.held(), high);
@@ -243,14 +280,9 @@ impl SharedKnapsack {
             for from in above..down_to {
                 self.undecided.push(Undecided { slope: class.slope(from), class: i as u32, from });
             }
-            let (cheapest, best) = (class.cost(0), class.cost(class.last()));
-            survey.cheapest = survey.cheapest.saturating_add(cheapest);
-            survey.best = survey.best.saturating_add(best);
-            survey.widest = survey.widest.max(best - cheapest);
-            survey.held = survey.held.saturating_add(class.cost(class.held()));
-            survey.above = survey.above.saturating_add(class.cost(above));
-            survey.down_to = survey.down_to.saturating_add(class.cost(down_to));
+            survey.add(&class, above, down_to);
         }
+        self.census.settled(&self.profiles).for_each(|settled| survey.add_settled(&settled));
         survey
     }
 
@@ -264,7 +296,7 @@ impl SharedKnapsack {
     /// items. They could never be chosen, and a hull through them would hide the ones that can.
     fn drop_unaffordable(&mut self, room: u64) {
         for i in 0..self.classes.len() {
-            let class = Class::new(&self.profiles, &self.classes, i);
+            let class = Class::new(&self.profiles, &self.classes[i]);
             if class.cost(class.last()) - class.cost(0) <= room {
                 continue;
             }
@@ -272,11 +304,11 @@ impl SharedKnapsack {
             let scale = class.scale;
             let held = class.positions[usize::from(class.held())].ticks;
             self.affordable.clear();
-            let items = self.profiles.items(self.classes.profile[i]).iter();
+            let items = self.profiles.items(self.classes[i].profile).iter();
             self.affordable.extend(items.filter(|item| scaled(item.ticks, scale) <= limit));
             let narrowed = self.profiles.push(&self.affordable);
-            self.classes.profile[i] = narrowed;
-            self.classes.current[i] = position_at(self.profiles.positions(narrowed), held);
+            self.classes[i].profile = narrowed;
+            self.classes[i].current = position_at(self.profiles.positions(narrowed), held);
         }
     }
 
@@ -290,10 +322,8 @@ impl SharedKnapsack {
         key: &impl Fn(usize) -> u128,
     ) -> Critical {
         let survey = self.bracketed(survey, budget, pin);
-        self.blocked.clear();
-        self.blocked.resize(self.classes.len(), false);
         if let Some(pin) = pin {
-            self.blocked[pin.class] = true;
+            self.standing[pin.class] = Standing::Blocked;
         }
         let mut critical = Critical::default();
         let mut room = budget - survey.above;
@@ -321,7 +351,7 @@ impl SharedKnapsack {
         self.histogram.resize(BUCKETS, 0);
         let mut spent = 0;
         for i in 0..self.classes.len() {
-            let class = Class::new(&self.profiles, &self.classes, i);
+            let class = Class::new(&self.profiles, &self.classes[i]);
             if let Some(pin) = pin.filter(|p| p.class == i) {
                 spent = class.cost(pin.position).saturating_add(spent);
                 continue;
@@ -352,16 +382,21 @@ impl SharedKnapsack {
         critical.steps += self.undecided.len();
         for step in &self.undecided {
             let i = step.class as usize;
-            if self.blocked[i] {
+            let class = Class::new(&self.profiles, &self.classes[i]);
+            let cost = class.cost(step.from + 1) - class.cost(step.from);
+            if self.standing[i] == Standing::Blocked {
                 continue;
             }
-            let class = Class::new(&self.profiles, &self.classes, i);
-            let cost = class.cost(step.from + 1) - class.cost(step.from);
+            if self.standing[i] == Standing::Settled {
+                self.census.remove(&class);
+                self.open.push(step.class);
+                self.standing[i] = Standing::Open;
+            }
             if cost <= *room {
                 *room -= cost;
                 self.choice[i] = step.from + 1;
             } else {
-                self.blocked[i] = true;
+                self.standing[i] = Standing::Blocked;
                 if critical.step.is_none() {
                     critical.step = Some(Pin { class: i, position: step.from + 1 });
                     critical.lambda = step.slope;
@@ -396,9 +431,9 @@ impl SharedKnapsack {
         self.undecided.clear();
         let mut open = false;
         for i in 0..self.classes.len() {
-            let class = Class::new(&self.profiles, &self.classes, i);
+            let class = Class::new(&self.profiles, &self.classes[i]);
             let mut from = self.choice[i];
-            let mut fits = !self.blocked[i];
+            let mut fits = self.standing[i] != Standing::Blocked;
             while fits && class.slope(from) >= low {
                 fits = class.cost(from + 1) - class.cost(from) <= room;
                 if fits {
@@ -407,7 +442,9 @@ impl SharedKnapsack {
                 }
             }
             // Steps collected before the one that does not fit may still be taken.
-            self.blocked[i] |= !fits && from == self.choice[i];
+            if !fits && from == self.choice[i] && self.standing[i] == Standing::Open {
+                self.standing[i] = Standing::Blocked;
+            }
             open |= fits && from < class.last();
         }
         open || !self.undecided.is_empty()
@@ -425,21 +462,30 @@ impl SharedKnapsack {
             return Outcome { upper_bound, priced_bound, lambda, steps, ..rival };
         }
         std::mem::swap(&mut self.rival, &mut self.choice);
+        self.surveyed = NOTHING;
         self.certify(critical.lambda);
         Outcome { steps, ..found }
     }
 
     /// Notes the items of the choice, and sums up what it comes to and what is possible at λ.
     fn certify(&mut self, lambda: f32) -> Sums {
-        let heaviest = self.classes.weight.iter().copied().fold(0.0, f32::max);
-        let mut sums = Sums::new(lambda, self.classes.len(), heaviest);
-        self.chosen.resize(self.classes.len(), 0);
-        for i in 0..self.classes.len() {
-            let class = Class::new(&self.profiles, &self.classes, i);
-            let position = self.choice[i];
-            self.chosen[i] = class.positions[usize::from(position)].item;
-            sums.add(&class, position);
+        let mut sums = Sums::new(lambda, self.classes.len(), self.census.unit());
+        let [low, high] = self.surveyed;
+        if low <= lambda && lambda <= high {
+            self.census.settled(&self.profiles).for_each(|settled| sums.add_settled(&settled));
+            for at in 0..self.open.len() {
+                self.certify_class(self.open[at] as usize, &mut sums);
+            }
+        } else {
+            (0..self.classes.len()).for_each(|i| self.certify_class(i, &mut sums));
         }
         sums
+    }
+
+    fn certify_class(&mut self, i: usize, sums: &mut Sums) {
+        let class = Class::new(&self.profiles, &self.classes[i]);
+        let position = self.choice[i];
+        self.chosen[i] = class.positions[usize::from(position)].item;
+        sums.add(&class, position);
     }
 }

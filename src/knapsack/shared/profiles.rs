@@ -100,6 +100,21 @@ impl Profiles {
         &self.positions[start as usize..end as usize]
     }
 
+    /// Where the hull of a profile starts among all positions.
+    pub(super) fn place(&self, profile: u32) -> u32 {
+        self.spans[profile as usize].positions.0
+    }
+
+    /// How many positions all hulls have.
+    pub(super) fn positions_len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// All hulls, by number.
+    pub(super) fn hulls(&self) -> impl Iterator<Item = &[Position]> {
+        self.spans.iter().map(|s| &self.positions[s.positions.0 as usize..s.positions.1 as usize])
+    }
+
     /// The items that a profile was made of, in the order they were given.
     pub fn items(&self, profile: u32) -> &[ProfileItem] {
         let (start, end) = self.spans[profile as usize].items;
