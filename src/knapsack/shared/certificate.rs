@@ -52,6 +52,8 @@ pub(super) struct Sums {
     classes: usize,
     /// Units of benefit per one: a power of two that gives the heaviest class 56 bits.
     unit: f64,
+    /// Sum of all weights, in units.
+    weight: u128,
     cost: u64,
     benefit: Worth,
     minimum: Worth,
@@ -103,6 +105,7 @@ impl Sums {
             lambda,
             classes,
             unit: power_of_two(WEIGHT_BITS - exponent_of(heaviest)),
+            weight: 0,
             cost: 0,
             benefit: Worth::default(),
             minimum: Worth::default(),
@@ -116,6 +119,7 @@ impl Sums {
     /// Adds a class and its chosen position.
     pub fn add(&mut self, class: &Class<'_>, choice: u8) {
         let weight = (f64::from(class.weight) * self.unit) as i64 as u64;
+        self.weight = self.weight.wrapping_add(u128::from(weight));
         self.cost = self.cost.saturating_add(class.cost(choice));
         self.benefit.add(class, weight, choice);
         self.minimum.add(class, weight, 0);
@@ -135,10 +139,12 @@ impl Sums {
     }
 
     /// Bounds are widened by what rounding can hide: two units per class for weights and premiums, two ticks per class
-    /// for scaled costs, and the last places of the products.
+    /// for scaled costs, the last binary digit of every value, doubled where switching is priced, and the last places of
+    /// the products.
     pub fn outcome(&self, budget: u64) -> Outcome {
         let lambda = f64::from(self.lambda);
-        let hidden = self.classes as f64 * 2.0 * (lambda + 1.0 / self.unit);
+        let digits = 2.0 * self.weight as f64 / ((1u64 << FRACTION_BITS) as f64 * self.unit);
+        let hidden = self.classes as f64 * 2.0 * (lambda + 1.0 / self.unit) + digits;
         let bound = |benefit: f64, cost: u64| {
             let unspent = lambda * (budget as f64 - cost as f64);
             let widest = benefit.abs() + lambda * (budget as f64 + cost as f64);
