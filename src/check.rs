@@ -127,8 +127,11 @@ pub fn rounding_us(frame: &Frame<'_>, i: usize) -> f64 {
     tick_us * (f64::from(frame.candidates.cost_scale[i]) + 2.0)
 }
 
-/// Terms of sums are rounded to this.
+/// Terms of sums, and accuracies in them, are rounded to this.
 const SUM_UNIT: f64 = 1.0 / (1u64 << 32) as f64;
+
+/// Benefits may be counted in units of which the heaviest candidate has 2³⁹ or more.
+const BENEFIT_UNIT: f64 = 1.0 / (1u64 << 39) as f64;
 
 /// The budget of the selection; nothing where it is no amount.
 fn budget_us(frame: &Frame<'_>) -> f64 {
@@ -169,13 +172,15 @@ impl Sums {
         let least_us: f64 = all.clone().map(|i| least_us(frame, i)).sum();
         let benefit: f64 = all.clone().map(|i| frame.benefit(i, levels[i])).sum();
         let ticks_us: f64 = all.clone().map(|i| rounding_us(frame, i)).sum();
+        let heaviest = frame.candidates.weight.iter().fold(0.0, |most: f64, &w| most.max(f64::from(w)));
+        let weight: f64 = frame.candidates.weight.iter().map(|&w| f64::from(w)).sum();
         let units = all.len() as f64 * SUM_UNIT;
         Self {
             cost_us,
             least_us,
             benefit,
             rounding_us: ticks_us + units + 1e-9 * cost_us,
-            rounding: units + 1e-9 * benefit,
+            rounding: units + all.len() as f64 * heaviest * BENEFIT_UNIT + weight * SUM_UNIT + 1e-9 * benefit,
         }
     }
 }
