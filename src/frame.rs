@@ -102,25 +102,21 @@ impl Candidates {
 
     /// Adds a candidate without memory of earlier frames.
     pub fn push(&mut self, c: Candidate) {
-        let i = self.len();
-        self.grow(1);
-        self.set(i, c);
+        self.slot.push(c.slot);
+        self.table.push(c.table);
+        self.allowed.push(c.allowed);
+        self.weight.push(c.weight);
+        self.cost_scale.push(c.cost_scale);
+        self.size_px.push(c.size_px);
+        self.near_px.push(c.near_px);
+        self.area_px2.push(c.area_px2);
+        self.forget_memory();
     }
 
-    /// Adds so many candidates at the end, whose contents are arbitrary until they are set; none has a memory of earlier
-    /// frames.
-    pub fn grow(&mut self, count: usize) {
-        let len = self.len() + count;
-        self.slot.resize(len, 0);
-        self.table.resize(len, 0);
-        self.allowed.resize(len, LevelRange::ALL);
-        self.weight.resize(len, 0.0);
-        self.cost_scale.resize(len, 1.0);
-        self.size_px.resize(len, 0.0);
-        self.near_px.resize(len, 0.0);
-        self.area_px2.resize(len, 0.0);
-        self.previous.resize(len, None);
-        self.age_ms.resize(len, 0);
+    /// Gives the candidates that were appended to the other columns no memory of earlier frames.
+    pub(crate) fn forget_memory(&mut self) {
+        self.previous.resize(self.slot.len(), None);
+        self.age_ms.resize(self.slot.len(), 0);
     }
 
     /// Overwrites candidate `i`, but for its memory of earlier frames.

@@ -148,27 +148,40 @@ fn push_rows(
     candidates: &mut Candidates,
 ) {
     let first = candidates.len();
-    candidates.grow(rows.mask.count_ones() as usize);
-    for (i, lane) in lanes(rows.mask).enumerate() {
-        let slot = index * BLOCK as u32 + lane as u32;
-        let table = block.table[lane];
-        let mut candidate = Candidate {
-            slot,
-            table,
-            allowed: rates.whole(table),
-            weight: rows.weight[lane],
-            cost_scale: rows.views[lane],
-            size_px: rows.size_px[lane],
-            near_px: rows.near_px[lane],
-            area_px2: rows.area_px2[lane],
-        };
-        if block.special & (1 << lane) != 0 {
-            heed(&mut candidate, objects.settings(slot as usize), rates.levels(table).len());
+    let slot = index * BLOCK as u32;
+    if rows.mask == u16::MAX {
+        candidates.slot.extend((0..BLOCK as u32).map(|lane| slot + lane));
+        candidates.table.extend_from_slice(&block.table);
+        candidates.weight.extend_from_slice(&rows.weight);
+        candidates.cost_scale.extend_from_slice(&rows.views);
+        candidates.size_px.extend_from_slice(&rows.size_px);
+        candidates.near_px.extend_from_slice(&rows.near_px);
+        candidates.area_px2.extend_from_slice(&rows.area_px2);
+    } else {
+        candidates.slot.extend(lanes(rows.mask).map(|lane| slot + lane as u32));
+        candidates.table.extend(lanes(rows.mask).map(|lane| block.table[lane]));
+        candidates.weight.extend(lanes(rows.mask).map(|lane| rows.weight[lane]));
+        candidates.cost_scale.extend(lanes(rows.mask).map(|lane| rows.views[lane]));
+        candidates.size_px.extend(lanes(rows.mask).map(|lane| rows.size_px[lane]));
+        candidates.near_px.extend(lanes(rows.mask).map(|lane| rows.near_px[lane]));
+        candidates.area_px2.extend(lanes(rows.mask).map(|lane| rows.area_px2[lane]));
+    }
+    let Candidates { table, allowed, .. } = candidates;
+    allowed.extend(table[first..].iter().map(|&table| rates.whole(table)));
+    candidates.forget_memory();
+    let heeds_error = model.enough_px > 0.0;
+    if block.special & rows.mask != 0 || heeds_error {
+        for (i, lane) in lanes(rows.mask).enumerate() {
+            let mut candidate = candidates.get(first + i);
+            let levels = rates.levels(candidate.table);
+            if block.special & (1 << lane) != 0 {
+                heed(&mut candidate, objects.settings(slot as usize + lane), levels.len());
+            }
+            if heeds_error {
+                spare(&mut candidate, levels, model.enough_px);
+            }
+            candidates.set(first + i, candidate);
         }
-        if model.enough_px > 0.0 {
-            spare(&mut candidate, rates.levels(table), model.enough_px);
-        }
-        candidates.set(first + i, candidate);
     }
 }
 

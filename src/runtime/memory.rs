@@ -14,12 +14,12 @@ pub(super) struct SlotState {
     pub shown: Shown,
     /// The last of the group's frames in which the object was in view. Memory ends when it leaves.
     seen: u32,
-    /// Since when the level is wanted, by the runtime's clock.
-    pub since_ms: f64,
+    /// Since when the level is wanted, by the group's clock in whole milliseconds, which wraps after seven weeks.
+    since_ms: u32,
 }
 
 impl SlotState {
-    const UNSEEN: Self = Self { wanted: Level::NOT_DRAWN, shown: Shown::NOTHING, seen: 0, since_ms: 0.0 };
+    const UNSEEN: Self = Self { wanted: Level::NOT_DRAWN, shown: Shown::NOTHING, seen: 0, since_ms: 0 };
 }
 
 /// The memory of one view group.
@@ -33,6 +33,8 @@ pub(super) struct GroupMemory {
     /// Slots in view in this frame and in the one before, ascending.
     visible: Vec<u32>,
     before: Vec<u32>,
+    /// How many of the slots in view were in view in the frame before.
+    stayed: usize,
 }
 
 /// The memory of a group, made when first asked for.
@@ -46,13 +48,22 @@ pub(super) fn of_group(groups: &mut Vec<GroupMemory>, id: GroupId) -> &mut Group
 
 impl GroupMemory {
     fn new(id: GroupId) -> Self {
-        Self { id, frame: 1, clock_ms: 0.0, states: Vec::new(), visible: Vec::new(), before: Vec::new() }
+        Self {
+            id,
+            frame: 1,
+            clock_ms: 0.0,
+            states: Vec::new(),
+            visible: Vec::new(),
+            before: Vec::new(),
+            stayed: 0,
+        }
     }
 
     /// Starts a frame at `clock_ms` over so many slots; returns the time since the group's last one.
     pub fn begin_frame(&mut self, slots: usize, clock_ms: f64) -> f64 {
         self.states.resize(slots, SlotState::UNSEEN);
         self.frame += 1;
+        self.stayed = 0;
         std::mem::swap(&mut self.visible, &mut self.before);
         self.visible.clear();
         clock_ms - std::mem::replace(&mut self.clock_ms, clock_ms)
@@ -64,7 +75,13 @@ impl GroupMemory {
         let state = &mut self.states[slot as usize];
         let remembered = state.seen + 1 == self.frame;
         state.seen = self.frame;
+        self.stayed += usize::from(remembered);
         remembered.then_some(state)
+    }
+
+    /// How long the level of a state has been wanted.
+    pub fn age_ms(clock_ms: f64, state: &SlotState) -> u32 {
+        whole_ms(clock_ms).wrapping_sub(state.since_ms)
     }
 
     /// The state of a slot that is in view.
@@ -89,24 +106,24 @@ impl GroupMemory {
 
     /// An object has come into view: it is shown as wanted at once.
     pub fn enter(&mut self, slot: u32, wanted: Level) {
-        let since_ms = self.clock_ms;
+        // Coming into view is no switch: the level counts as one that is long wanted.
+        let since_ms = whole_ms(self.clock_ms).wrapping_sub(LONG_AGO_MS);
         let state = &mut self.states[slot as usize];
         *state = SlotState { wanted, shown: Shown::steady(wanted), since_ms, ..*state };
     }
 
-    /// Notes what is wanted; whether it is not what is shown, and steadily.
-    pub fn want(&mut self, slot: u32, wanted: Level) -> bool {
-        let clock_ms = self.clock_ms;
+    /// Notes that something else is wanted than before.
+    pub fn want(&mut self, slot: u32, wanted: Level) {
+        let since_ms = whole_ms(self.clock_ms);
         let state = &mut self.states[slot as usize];
-        if state.wanted != wanted {
-            state.wanted = wanted;
-            state.since_ms = clock_ms;
-        }
-        state.shown.level != wanted || state.shown.is_in_flight()
+        *state = SlotState { wanted, since_ms, ..*state };
     }
 
     /// Lists what has left the view since the group's last frame.
     pub fn end_frame(&self, objects: &Objects, changes: &mut Vec<Change>) {
+        if self.stayed == self.before.len() {
+            return;
+        }
         for &slot in &self.before {
             let state = &self.states[slot as usize];
             if let Some(object) = objects.id_of(slot as usize).filter(|_| state.seen + 1 == self.frame) {
@@ -148,6 +165,13 @@ impl GroupMemory {
             self.visible.sort_unstable();
         }
     }
+}
+
+/// Longer than any dwell: 12 days.
+const LONG_AGO_MS: u32 = 1 << 30;
+
+fn whole_ms(clock_ms: f64) -> u32 {
+    clock_ms as u64 as u32
 }
 
 /// Which object lived in which slot when the groups' memory was last brought up to date.

@@ -127,6 +127,8 @@ struct Scratch {
     cursors: Vec<usize>,
     candidates: Candidates,
     levels: Vec<Level>,
+    /// Candidates whose transition is in flight, or who were not shown as wanted in the last frame.
+    unsteady: Vec<usize>,
     /// Candidates that have come into view, or are not shown as they are wanted.
     news: Vec<usize>,
     /// Candidates whose shown level is not the one that is wanted.
@@ -299,7 +301,8 @@ impl Runtime {
     /// Fills in what was wanted of each candidate before, and advances its transition. Returns what the outgoing levels
     /// of transitions in flight cost, by the model.
     fn remember(&mut self) -> f64 {
-        let Scratch { candidates, .. } = &mut self.scratch;
+        let Scratch { candidates, unsteady, .. } = &mut self.scratch;
+        unsteady.clear();
         let mut fades_us = FixedSum::default();
         for run in 0..candidates.ends.len() {
             let group = candidates.ends[run].group;
@@ -310,7 +313,10 @@ impl Runtime {
                 let coarsest = self.rates.coarsest(candidates.table[i]);
                 let wanted = if state.wanted.is_drawn() { state.wanted.min(coarsest) } else { state.wanted };
                 candidates.previous[i] = Some(wanted);
-                candidates.age_ms[i] = (self.clock_ms - state.since_ms) as u32;
+                candidates.age_ms[i] = GroupMemory::age_ms(self.clock_ms, state);
+                if state.shown != Shown::steady(wanted) {
+                    unsteady.push(i);
+                }
                 if state.shown.is_in_flight() {
                     state.shown = state.shown.advanced(dt_ms as f32, &self.options.transition);
                     let price = |level| cost_us(self.feedback.model(), &self.rates, candidates, i, level);
@@ -384,25 +390,27 @@ impl Runtime {
     /// Notes what is wanted of every candidate of a group, and which of them are news: in view for the first time, or
     /// not shown as they are wanted.
     fn news(&mut self, group: GroupId) {
-        let Scratch { candidates, levels, news, .. } = &mut self.scratch;
+        let Scratch { candidates, levels, news, unsteady, .. } = &mut self.scratch;
         let memory = memory::of_group(&mut self.groups, group);
         news.clear();
-        for i in candidates.range(group) {
-            let (slot, wanted) = (candidates.slot[i], levels[i]);
-            let is_news = match candidates.previous[i] {
-                Some(previous) => {
-                    self.report.switches += usize::from(previous != wanted);
-                    memory.want(slot, wanted)
-                }
-                None => {
-                    memory.enter(slot, wanted);
-                    true
-                }
-            };
-            if is_news {
-                news.push(i);
+        let range = candidates.range(group);
+        news.extend(unsteady.iter().filter(|i| range.contains(i)));
+        for i in range {
+            let (previous, wanted) = (candidates.previous[i], levels[i]);
+            if previous == Some(wanted) {
+                continue;
             }
+            match previous {
+                Some(_) => {
+                    memory.want(candidates.slot[i], wanted);
+                    self.report.switches += 1;
+                }
+                None => memory.enter(candidates.slot[i], wanted),
+            }
+            news.push(i);
         }
+        news.sort_unstable();
+        news.dedup();
     }
 
     /// Asks for a transition of candidate `i` to what is wanted. Where a level that is `shown` is no longer in its table
@@ -473,9 +481,16 @@ impl Runtime {
 
     /// Counts and model time of everything shown, outgoing levels of transitions included.
     fn tally(&mut self, objects: &Objects) -> (Drivers, f64) {
-        let Scratch { candidates, tally, .. } = &mut self.scratch;
+        let Scratch { candidates, tally, levels, .. } = &mut self.scratch;
         let (model, kind) = (self.feedback.model(), self.options.transition.kind);
         tally.clear(self.rates.len());
+        if kind == TransitionKind::Hard {
+            // What is wanted is shown.
+            for (i, &level) in levels.iter().enumerate() {
+                tally.add_level(model, &self.rates, candidates, i, level);
+            }
+            return tally.sum(model, objects.tables());
+        }
         for (group, range) in candidates.groups() {
             let memory = memory::of_group(&mut self.groups, group.group);
             for i in range {

@@ -51,7 +51,15 @@ impl Tally {
         }
     }
 
-    fn add_level(&mut self, model: &CostModel, rates: &TableRates, c: &Candidates, i: usize, level: Level) {
+    /// Counts one level of candidate `i`.
+    pub fn add_level(
+        &mut self,
+        model: &CostModel,
+        rates: &TableRates,
+        c: &Candidates,
+        i: usize,
+        level: Level,
+    ) {
         if level.is_drawn() {
             let count = &mut self.usage[rates.index(c.table[i], level)];
             *count = count.saturating_add((f64::from(c.cost_scale[i]) * USAGE_UNIT) as i64);

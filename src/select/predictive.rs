@@ -54,11 +54,6 @@ impl PredictiveOptions {
 /// Marks a class whose hull is yet to be made.
 const OWN: u32 = u32::MAX;
 
-/// Where the cost of pixels depends on the level, the table's hull does not hold.
-fn has_own_hull(frame: &Frame<'_>, i: usize) -> bool {
-    frame.model.stages == Stages::Max || !frame.candidates.allowed[i].coarsest.is_drawn()
-}
-
 /// Maximises benefit under the budget, with a certificate: after Funkhouser and Séquin 1993 in what it maximises, not
 /// in how. Switching prices are part of the objective, so that hysteresis never breaks the budget.
 #[derive(Clone, Debug, Default)]
@@ -84,16 +79,19 @@ impl Predictive {
     fn fill_classes(&mut self, frame: &Frame<'_>) -> u64 {
         let candidates = frame.candidates;
         let pixel_ticks = frame.model.pixel_us * self.hulls.ticks_per_us;
+        // Where the cost of pixels depends on the level, the table's hull does not hold.
+        let all_own = frame.model.stages == Stages::Max;
         let mut fixed = 0u64;
         self.knapsack.classes.clear();
+        self.knapsack.classes.reserve(candidates.len());
         for i in 0..candidates.len() {
             let (table, allowed) = (candidates.table[i], candidates.allowed[i]);
-            let own = has_own_hull(frame, i);
+            let own = all_own || !allowed.coarsest.is_drawn();
             let profile = if own {
                 OWN
             } else {
-                let pixels = ceil_ticks(pixel_ticks * f64::from(candidates.area_px2[i]));
-                fixed = pixels.saturating_add(fixed);
+                let pixels = (pixel_ticks * f64::from(candidates.area_px2[i])) as i64;
+                fixed = fixed.saturating_add(pixels as u64 + 1);
                 self.hulls.shared(table, allowed, frame.rates, &mut self.knapsack)
             };
             let previous = candidates.previous[i];
