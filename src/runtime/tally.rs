@@ -11,19 +11,21 @@ use crate::transition::{Shown, TransitionKind};
 pub(super) struct Tally {
     /// Per level of every table, how often it is drawn, cost multipliers included, in units of 2⁻²⁰.
     usage: Vec<i64>,
-    area_px2: FixedSum,
+    /// Projected area, in units of 2⁻¹² px².
+    area: i64,
     /// Time by the model, where it is not linear in the counts.
     time_us: FixedSum,
 }
 
 const USAGE_UNIT: f64 = (1 << 20) as f64;
+const AREA_UNIT: f64 = (1 << 12) as f64;
 
 impl Tally {
     /// Forgets all counts; `levels` is how many levels all tables have.
     pub fn clear(&mut self, levels: usize) {
         self.usage.clear();
         self.usage.resize(levels, 0);
-        self.area_px2 = FixedSum::default();
+        self.area = 0;
         self.time_us = FixedSum::default();
     }
 
@@ -63,7 +65,7 @@ impl Tally {
         if level.is_drawn() {
             let count = &mut self.usage[rates.index(c.table[i], level)];
             *count = count.saturating_add((f64::from(c.cost_scale[i]) * USAGE_UNIT) as i64);
-            self.area_px2.add(f64::from(c.area_px2[i]));
+            self.area = self.area.saturating_add((f64::from(c.area_px2[i]) * AREA_UNIT) as i64);
             if model.stages == Stages::Max {
                 self.time_us.add(cost_us(model, rates, c, i, level));
             }
@@ -77,7 +79,7 @@ impl Tally {
             let times = count as f64 / USAGE_UNIT;
             drivers.iter_mut().zip(drivers_of(level)).for_each(|(sum, d)| *sum += d * times);
         }
-        drivers[DRIVERS - 1] = self.area_px2.value();
+        drivers[DRIVERS - 1] = self.area as f64 / AREA_UNIT;
         let linear_us = drivers.iter().zip(model.coefficients()).map(|(d, c)| d * c).sum();
         (drivers, if model.stages == Stages::Max { self.time_us.value() } else { linear_us })
     }
