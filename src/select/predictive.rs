@@ -25,7 +25,7 @@ pub struct PredictiveOptions {
 
 impl Default for PredictiveOptions {
     fn default() -> Self {
-        Self { hysteresis: 0.2, dwell_ms: 500, dwell: 0.7, ease: 0.005 }
+        Self { hysteresis: 0.2, dwell_ms: 500, dwell: 0.7, ease: 0.01 }
     }
 }
 
