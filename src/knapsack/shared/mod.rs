@@ -129,13 +129,6 @@ impl Survey {
             *sum = sum.saturating_add(here);
         }
     }
-
-    /// What to spend: what is held, held between `ease` and `budget`. Where a single item is too dear for that there is
-    /// no dead band: it would keep the item out, and with it perhaps most of the benefit.
-    fn target(&self, budget: u64, ease: u64) -> u64 {
-        let target = self.held.clamp(ease, budget);
-        if self.widest > target - self.cheapest { budget } else { target }
-    }
 }
 
 /// A class held at a position, whatever its slope.
@@ -212,7 +205,7 @@ impl SharedKnapsack {
             let shortfall = survey.cheapest - budget;
             return Outcome { shortfall, ..self.certify(0.0).outcome(budget) };
         }
-        let target = survey.target(budget, ease);
+        let target = self.target(&survey, budget, ease);
         if survey.best <= target {
             self.take_all();
             return self.certify(0.0).outcome(budget);
@@ -235,6 +228,22 @@ impl SharedKnapsack {
 
     fn class(&self, i: usize) -> Class<'_> {
         Class::new(&self.profiles, &self.classes[i])
+    }
+
+    /// What to spend: what is held, held between `ease` and `budget`. Where the dead band alone would keep an item out
+    /// there is none: with that item perhaps most of the benefit would be lost.
+    fn target(&self, survey: &Survey, budget: u64, ease: u64) -> u64 {
+        let target = survey.held.clamp(ease, budget);
+        let (room, whole) = (target - survey.cheapest, budget - survey.cheapest);
+        let kept_out = |class: &SharedClass| {
+            let cheapest = Class::new(&self.profiles, class).cost(0);
+            let mut items = self.profiles.items(class.profile).iter();
+            items.any(|item| {
+                let extra = scaled(item.ticks, class.scale) - cheapest;
+                room < extra && extra <= whole
+            })
+        };
+        if survey.widest > room && self.classes.iter().any(kept_out) { budget } else { target }
     }
 
     /// The bracket around the last λ; an empty one at the top when there is none.
