@@ -11,7 +11,7 @@ mod metrics;
 mod threads;
 mod trial;
 
-pub use compare::{CompareOptions, Comparison, Policy, PolicyResult, Progress, compare};
+pub use compare::{CompareError, CompareOptions, Comparison, Policy, PolicyResult, Progress, compare};
 pub use machine::Machine;
 pub use metrics::{FrameMs, Metrics};
 pub use trial::{Bounds, Camera, FrameRow, Reference, Trial};
