@@ -210,7 +210,7 @@ impl Hulls {
         knapsack.profiles.truncate(0);
         self.by_table.iter_mut().for_each(Vec::clear);
         self.by_table.resize(frame.rates.tables(), Vec::new());
-        for table in 0..frame.rates.tables() as u16 {
+        for table in (0..frame.rates.tables()).map(|table| table as u16) {
             self.make(table, frame.rates.whole(table), frame.rates, knapsack);
         }
     }

@@ -168,7 +168,7 @@ impl<'a> Trial<'a> {
     ) -> Result<Vec<FrameRow>, OptionsError> {
         let mut runtime = Runtime::new(self.options, selector)?;
         let mut objects = self.objects.clone();
-        let mut judge = Judge::new(self.machine, bounds);
+        let mut judge = Judge::new(self.machine, bounds)?;
         let mut pending = Vec::new();
         let mut rows = Vec::with_capacity(references.len());
         let frames = self.camera.views(self.path).zip(self.machine.noise()).zip(references);
@@ -212,17 +212,17 @@ struct Judge<'a> {
 const REVERSAL_S: f64 = 1.0;
 
 impl<'a> Judge<'a> {
-    fn new(machine: &'a Machine, bounds: Bounds) -> Self {
+    fn new(machine: &'a Machine, bounds: Bounds) -> Result<Self, OptionsError> {
         let free = PredictiveOptions { hysteresis: 0.0, dwell_ms: 0, dwell: 0.0, ease: 0.0 };
-        Self {
+        Ok(Self {
             machine,
             bounds,
-            oracle: Predictive::new(free).unwrap_or_default(),
+            oracle: Predictive::new(free)?,
             seen: Candidates::default(),
             levels: Vec::new(),
             shown: Vec::new(),
             history: HashMap::new(),
-        }
+        })
     }
 
     fn row(
