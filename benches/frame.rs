@@ -133,7 +133,7 @@ fn rating(c: &mut Criterion) {
         let mut candidates = Candidates::default();
         group(c, "rate").bench_function(&place.name, |b| {
             b.iter(|| {
-                candidates.clear();
+                candidates.clear(rates.len());
                 rate(&place.objects, &rates, black_box(&seen), &model, &mut cursors, &mut candidates);
             });
         });

@@ -98,9 +98,9 @@ fn camera(frame: u32) -> View {
 /// Stands for the GPU: the price of everything that is drawn, on a machine slower than the model.
 fn draw(runtime: &Runtime, objects: &Objects) -> f64 {
     let prior = CostModel::default();
-    let candidates = runtime.candidates();
+    let frame = runtime.last_frame(objects);
     let price = |(i, level): (usize, &Level)| {
-        let c = candidates.get(i);
+        let c = frame.candidate(i);
         let record = objects.tables()[usize::from(c.table)].levels().get(level.index());
         let geometry_us = record.map(|record| prior.geometry_us(record));
         geometry_us.map_or(0.0, |us| prior.object_us(us, f64::from(c.cost_scale), f64::from(c.area_px2)))

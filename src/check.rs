@@ -75,6 +75,8 @@ pub fn selection(
     report: &SelectReport,
     promise: Promise,
 ) -> Result<(), Violation> {
+    let detailed = frame.detailed();
+    let frame = &Frame { candidates: &detailed, ..*frame };
     each_level(frame, levels)?;
     let sums = Sums::of(frame, levels);
     reported_sums(&sums, report)?;
@@ -92,6 +94,8 @@ pub fn selection(
 /// A bound that is too low.
 pub fn bound(frame: &Frame<'_>, report: &SelectReport) -> Result<(), Violation> {
     let Some(certificate) = report.certificate else { return Ok(()) };
+    let detailed = frame.detailed();
+    let frame = &Frame { candidates: &detailed, ..*frame };
     let hidden: f64 = (0..frame.candidates.len()).map(|i| rounding_us(frame, i)).sum();
     let budget = (budget_us(frame) - hidden).min(f64::MAX);
     let classes = (0..frame.candidates.len()).map(|i| choices(frame, i).map(|l| item(frame, i, l)).collect());
@@ -286,7 +290,8 @@ impl Replay {
         input: &FrameInput<'_>,
         promise: Promise,
     ) -> Result<(), Violation> {
-        let frame = runtime.last_frame(objects);
+        let detailed = runtime.last_frame(objects).detailed();
+        let frame = Frame { candidates: &detailed, ..runtime.last_frame(objects) };
         self.apply(runtime.changes())?;
         self.dense_levels(runtime, objects, frame.candidates.groups().map(|(g, _)| g.group))?;
         self.memory(&frame)?;

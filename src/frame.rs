@@ -2,8 +2,9 @@
 
 use std::fmt;
 
-use crate::scene::{LevelRange, ObjectId};
+use crate::scene::{BLOCK, LevelRange, ObjectId, lanes};
 use crate::table::Level;
+use crate::view::Lens;
 
 /// Which frame a measurement belongs to. The runtime numbers its frames from 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -37,16 +38,30 @@ pub struct Candidate {
 }
 
 /// The candidates of a frame, column by column: groups in the order of their ids, slots ascending within a group.
+///
+/// The columns from `table` to `area_px2` are *details*. Where a policy can do without them
+/// ([`Selector::needs`](crate::select::Selector::needs)) they are left empty, and
+/// [`Frame::candidate`](crate::select::Frame::candidate) works out those of a single candidate.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
     /// See [`Candidate::slot`].
     pub slot: Vec<u32>,
+    /// See [`Candidate::weight`].
+    pub weight: Vec<f32>,
+    /// What was wanted in the last frame; `None` for an object that has just come into view.
+    pub previous: Vec<Option<Level>>,
+    /// How long that has been wanted.
+    pub age_ms: Vec<u32>,
+    /// Where the level that was wanted in the last frame stands among the levels of all tables
+    /// ([`TableRates::index`](crate::rate::TableRates::index)), of a candidate that may choose among all levels of its
+    /// table and counts once. [`NO_PLACE`] for any other, and for one that has just come into view.
+    pub place: Vec<u32>,
+    /// How many candidates there are at each place.
+    pub census: Vec<u32>,
     /// See [`Candidate::table`].
     pub table: Vec<u16>,
     /// See [`Candidate::allowed`].
     pub allowed: Vec<LevelRange>,
-    /// See [`Candidate::weight`].
-    pub weight: Vec<f32>,
     /// See [`Candidate::cost_scale`].
     pub cost_scale: Vec<f32>,
     /// See [`Candidate::size_px`].
@@ -55,12 +70,28 @@ pub struct Candidates {
     pub near_px: Vec<f32>,
     /// See [`Candidate::area_px2`].
     pub area_px2: Vec<f32>,
-    /// What was wanted in the last frame; `None` for an object that has just come into view.
-    pub previous: Vec<Option<Level>>,
-    /// How long that has been wanted.
-    pub age_ms: Vec<u32>,
+    /// Sum of [`Candidate::area_px2`].
+    pub pixels: PixelSum,
+    /// The blocks that the candidates are in, in the same order.
+    pub rows: Vec<Row>,
     /// Where each group's candidates end, in the order of groups.
     pub ends: Vec<GroupEnd>,
+}
+
+/// See [`Candidates::place`].
+pub const NO_PLACE: u32 = u32::MAX;
+
+/// The candidates of one group in one block of objects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// Index into [`Objects::blocks`](crate::scene::Objects::blocks).
+    pub block: u32,
+    /// Bit per lane that is a candidate, at least one of them set.
+    pub mask: u16,
+    /// Those of them that were candidates in the last frame as well.
+    pub known: u16,
+    /// Its first candidate.
+    pub first: u32,
 }
 
 /// The end of a group's run in [`Candidates`]; it starts where the run before it ends.
@@ -70,8 +101,37 @@ pub struct GroupEnd {
     pub group: GroupId,
     /// One past its last candidate.
     pub end: usize,
-    /// Height of the viewport of the group's first view.
-    pub height_px: f32,
+    /// One past its last row.
+    pub end_row: usize,
+    /// How many views it has.
+    pub views: usize,
+    /// The group's first view.
+    pub lens: Lens,
+}
+
+/// A sum of areas that does not depend on the order of its terms: each is rounded to 2⁻⁶ px², and sums of such numbers
+/// below 2⁴⁷ px² are exact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PixelSum(f64);
+
+impl PixelSum {
+    /// Adding and subtracting this rounds to 2⁻⁶.
+    const ROUND: f64 = 3.0 * (1u64 << 45) as f64;
+
+    /// An area as it counts.
+    pub fn rounded(area_px2: f32) -> f64 {
+        (f64::from(area_px2) + Self::ROUND) - Self::ROUND
+    }
+
+    /// Adds an area that has been rounded, or a sum of such.
+    pub fn add(&mut self, rounded_px2: f64) {
+        self.0 += rounded_px2;
+    }
+
+    /// The sum in px².
+    pub fn px2(self) -> f64 {
+        self.0
+    }
 }
 
 impl Candidates {
@@ -85,53 +145,79 @@ impl Candidates {
         self.slot.is_empty()
     }
 
-    /// Forgets all candidates and keeps the memory.
-    pub fn clear(&mut self) {
+    /// Whether the columns of details are filled.
+    pub fn is_detailed(&self) -> bool {
+        self.table.len() == self.slot.len()
+    }
+
+    /// Forgets all candidates and keeps the memory. `places` is how many levels all tables have.
+    pub fn clear(&mut self, places: usize) {
         self.slot.clear();
+        self.weight.clear();
+        self.previous.clear();
+        self.age_ms.clear();
+        self.place.clear();
+        self.census.clear();
+        self.census.resize(places, 0);
+        self.clear_details();
+        self.pixels = PixelSum::default();
+        self.rows.clear();
+        self.ends.clear();
+    }
+
+    /// Empties the columns of details.
+    pub fn clear_details(&mut self) {
         self.table.clear();
         self.allowed.clear();
-        self.weight.clear();
         self.cost_scale.clear();
         self.size_px.clear();
         self.near_px.clear();
         self.area_px2.clear();
-        self.previous.clear();
-        self.age_ms.clear();
-        self.ends.clear();
     }
 
-    /// Adds a candidate without memory of earlier frames.
+    /// Adds the candidates of a block: those in `mask`, with the weights in their lanes. Not their details, not their
+    /// memory of earlier frames.
+    pub fn push_row(&mut self, block: u32, mask: u16, weight: &[f32; BLOCK]) {
+        let (first, slot) = (self.slot.len() as u32, block * BLOCK as u32);
+        self.rows.push(Row { block, mask, known: 0, first });
+        if mask == u16::MAX {
+            self.slot.extend((0..BLOCK as u32).map(|lane| slot + lane));
+            self.weight.extend_from_slice(weight);
+        } else {
+            for lane in lanes(mask) {
+                self.slot.push(slot + lane as u32);
+                self.weight.push(weight[lane]);
+            }
+        }
+    }
+
+    /// Adds a candidate without memory of earlier frames, and its details.
     pub fn push(&mut self, c: Candidate) {
         self.slot.push(c.slot);
+        self.weight.push(c.weight);
+        self.pixels.add(PixelSum::rounded(c.area_px2));
+        self.push_details(c);
+        self.forget_memory();
+    }
+
+    /// Adds to the columns of details alone.
+    pub fn push_details(&mut self, c: Candidate) {
         self.table.push(c.table);
         self.allowed.push(c.allowed);
-        self.weight.push(c.weight);
         self.cost_scale.push(c.cost_scale);
         self.size_px.push(c.size_px);
         self.near_px.push(c.near_px);
         self.area_px2.push(c.area_px2);
-        self.forget_memory();
     }
 
     /// Gives the candidates that were appended to the other columns no memory of earlier frames.
     pub(crate) fn forget_memory(&mut self) {
         self.previous.resize(self.slot.len(), None);
         self.age_ms.resize(self.slot.len(), 0);
+        self.place.resize(self.slot.len(), NO_PLACE);
     }
 
-    /// Overwrites candidate `i`, but for its memory of earlier frames.
-    pub fn set(&mut self, i: usize, c: Candidate) {
-        self.slot[i] = c.slot;
-        self.table[i] = c.table;
-        self.allowed[i] = c.allowed;
-        self.weight[i] = c.weight;
-        self.cost_scale[i] = c.cost_scale;
-        self.size_px[i] = c.size_px;
-        self.near_px[i] = c.near_px;
-        self.area_px2[i] = c.area_px2;
-    }
-
-    /// One candidate, across the columns.
+    /// One candidate, across the columns, which must be [detailed](Candidates::is_detailed).
     pub fn get(&self, i: usize) -> Candidate {
         Candidate {
             slot: self.slot[i],
@@ -145,9 +231,20 @@ impl Candidates {
         }
     }
 
-    /// Closes the run of `group`, whose first view is `height_px` high.
-    pub fn end_group(&mut self, group: GroupId, height_px: f32) {
-        self.ends.push(GroupEnd { group, end: self.len(), height_px });
+    /// Closes the run of `group`, the first of whose views is seen through `lens`.
+    pub fn end_group(&mut self, group: GroupId, lens: Lens, views: usize) {
+        self.ends.push(GroupEnd { group, end: self.len(), end_row: self.rows.len(), views, lens });
+    }
+
+    /// The candidate of a group that lives in `slot`.
+    pub fn find(&self, group: GroupId, slot: u32) -> Option<usize> {
+        let run = self.ends.binary_search_by_key(&group, |g| g.group).ok()?;
+        let first_row = if run == 0 { 0 } else { self.ends[run - 1].end_row };
+        let rows = &self.rows[first_row..self.ends[run].end_row];
+        let (block, lane) = (slot / BLOCK as u32, slot % BLOCK as u32);
+        let row = rows[rows.binary_search_by_key(&block, |row| row.block).ok()?];
+        let before = row.mask & ((1u16 << lane) - 1);
+        (row.mask & (1 << lane) != 0).then(|| row.first as usize + before.count_ones() as usize)
     }
 
     /// The group that candidate `i` belongs to.
@@ -160,6 +257,21 @@ impl Candidates {
     pub fn groups(&self) -> impl Iterator<Item = (GroupEnd, std::ops::Range<usize>)> + '_ {
         let starts = std::iter::once(0).chain(self.ends.iter().map(|g| g.end));
         self.ends.iter().zip(starts).map(|(&group, start)| (group, start..group.end))
+    }
+
+    /// The candidates of the group at `run` in [`Candidates::ends`].
+    pub fn run(&self, run: usize) -> std::ops::Range<usize> {
+        let start = if run == 0 { 0 } else { self.ends[run - 1].end };
+        start..self.ends[run].end
+    }
+
+    /// Counts how many candidates there are at each place.
+    pub(crate) fn take_census(&mut self) {
+        for &place in &self.place {
+            if let Some(count) = self.census.get_mut(place as usize) {
+                *count += 1;
+            }
+        }
     }
 
     /// The candidates of a group; empty for a group that is not in this frame.

@@ -539,6 +539,18 @@ fn set_bit(mask: &mut u16, lane: usize, on: bool) {
     *mask = *mask & !(1 << lane) | u16::from(on) << lane;
 }
 
+/// The positions of the bits of `mask`, ascending.
+pub(crate) fn lanes(mask: u16) -> impl Iterator<Item = usize> {
+    let mut rest = mask;
+    std::iter::from_fn(move || {
+        let lane = rest.trailing_zeros() as usize;
+        (rest != 0).then(|| {
+            rest &= rest - 1;
+            lane
+        })
+    })
+}
+
 /// Why an object was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ObjectError {

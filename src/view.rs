@@ -256,6 +256,8 @@ pub struct Lens {
     pub forward: Vec3,
     /// Pixels per tangent (perspective) or per world unit (orthographic), the geometric mean of both axes.
     pub scale_px: f32,
+    /// Projected area of a sphere of radius 1 at distance 1 (perspective) or anywhere (orthographic): π · scale².
+    pub unit_px2: f32,
     /// Area of the viewport, the most that any object can cover.
     pub viewport_px2: f32,
     /// Height of the viewport.
@@ -282,11 +284,13 @@ impl Lens {
         let gaze = if perspective { forward + right * x + up * y } else { forward };
         let per_x = view.viewport_px.x / (window.right - window.left);
         let per_y = view.viewport_px.y / (window.top - window.bottom);
+        let scale_px = (per_x * per_y).sqrt();
         Self {
             frustum: Frustum { planes: planes(view, window, perspective, eye, [right, up, forward]) },
             eye,
             forward,
-            scale_px: (per_x * per_y).sqrt(),
+            scale_px,
+            unit_px2: std::f32::consts::PI * scale_px * scale_px,
             viewport_px2: view.viewport_px.x * view.viewport_px.y,
             height_px: view.viewport_px.y,
             near: view.near,
@@ -310,8 +314,15 @@ impl Lens {
     }
 
     /// Projected area of a sphere in square pixels, at most the viewport's; the whole viewport when the eye is inside.
+    /// Free of branches and square roots, so that a loop over spheres can be vectorised.
     pub fn area_px2(&self, sphere: &Sphere) -> f32 {
-        self.project(sphere).0
+        let d = sphere.center - self.eye;
+        let distance2 = (d.x * d.x + d.y * d.y + d.z * d.z).max(self.near * self.near);
+        let distance2 = if self.perspective { distance2 } else { 1.0 };
+        let radius2 = sphere.radius * sphere.radius;
+        let area_px2 = (radius2 * self.unit_px2 / distance2).min(self.viewport_px2);
+        let inside = self.perspective & (distance2 <= radius2);
+        if inside { self.viewport_px2 } else { area_px2 }
     }
 
     /// Projected length in pixels of one world unit at the point of the sphere that is nearest to the eye, taken no
@@ -324,11 +335,8 @@ impl Lens {
     /// sphere's nearest point. Free of branches, so that a loop over spheres can be vectorised.
     pub fn project(&self, sphere: &Sphere) -> (f32, f32, f32) {
         let distance = self.distance(sphere.center);
-        let radius_px = sphere.radius * self.scale_px / distance;
-        let area_px2 = (std::f32::consts::PI * radius_px * radius_px).min(self.viewport_px2);
-        let inside = self.perspective & (distance <= sphere.radius);
-        let area_px2 = if inside { self.viewport_px2 } else { area_px2 };
-        (area_px2, 2.0 * radius_px, sphere.radius * self.nearest_px(distance, sphere.radius))
+        let size_px = 2.0 * sphere.radius * self.scale_px / distance;
+        (self.area_px2(sphere), size_px, sphere.radius * self.nearest_px(distance, sphere.radius))
     }
 
     fn nearest_px(&self, distance: f32, radius: f32) -> f32 {

@@ -7,7 +7,7 @@
 
 use std::collections::VecDeque;
 
-use glam::{Quat, Vec2, Vec3};
+use glam::{DVec3, Quat, Vec2, Vec3};
 use lod_budget::bounds::Sphere;
 use lod_budget::frame::{
     Budget, Candidate, Candidates, Clock, FrameId, FrameTime, GroupId, SelectReport, Timing,
@@ -157,14 +157,14 @@ impl Machine {
     fn busy_us(&self, runtime: &Runtime, objects: &Objects) -> f64 {
         let mut rates = TableRates::default();
         rates.renew(objects.tables(), &self.truth);
-        let candidates = runtime.candidates();
+        let frame = runtime.last_frame(objects);
         let price = |i: usize| {
-            let id = objects.id_of(candidates.slot[i] as usize).expect("an object");
-            let shown = runtime.shown(objects, candidates.group_of(i), id);
-            let cost_us = |level| cost_us(&self.truth, &rates, candidates, i, level);
+            let id = objects.id_of(frame.candidates.slot[i] as usize).expect("an object");
+            let shown = runtime.shown(objects, frame.candidates.group_of(i), id);
+            let cost_us = |level| cost_us(&self.truth, &rates, &frame.candidate(i), level);
             cost_us(shown.level) + if shown.is_in_flight() { cost_us(shown.from) } else { 0.0 }
         };
-        (0..candidates.len()).map(price).sum()
+        (0..frame.candidates.len()).map(price).sum()
     }
 
     fn draw(&mut self, runtime: &Runtime, objects: &Objects) {
@@ -521,7 +521,7 @@ fn counterexample(select: &mut dyn Selector) -> SelectReport {
             area_px2: 0.0,
         });
     }
-    candidates.end_group(GroupId(0), 1080.0);
+    candidates.end_group(GroupId(0), camera().lens(DVec3::ZERO), 1);
     rates.renew(objects.tables(), &model);
     let budget = Budget { frame_us: 346.8607, target_us: 346.8607, select_us: 346.8607 };
     let (id, timing) = (FrameId(1), Timing::default());

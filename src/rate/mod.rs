@@ -2,7 +2,8 @@
 //! cost.
 //!
 //! Benefit = projected area · accuracy · importance · focus · motion, in px². All of it but the accuracy is the
-//! candidate's weight; the accuracy is the level's.
+//! candidate's weight; the accuracy is the level's. [`weigh`] makes the weights alone, from one view, [`rate`] the details
+//! as well; [`details`] works them out for one candidate.
 
 mod benefit;
 mod cost;
@@ -15,8 +16,8 @@ pub use levels::{LevelRate, TableRates, estimated_error};
 use glam::Vec3;
 
 use crate::cull::VisibleBlock;
-use crate::frame::{Candidate, Candidates};
-use crate::scene::{BLOCK, Block, Objects, Settings};
+use crate::frame::{Candidate, Candidates, PixelSum};
+use crate::scene::{BLOCK, Block, Objects, Settings, lanes};
 use crate::table::Level;
 use crate::view::Lens;
 
@@ -29,19 +30,90 @@ pub struct Seen {
     pub visible: Vec<VisibleBlock>,
 }
 
-/// Predicted time of candidate `i` at `level`; 0 when not drawn.
-pub fn cost_us(
-    model: &CostModel,
-    rates: &TableRates,
-    candidates: &Candidates,
-    i: usize,
-    level: Level,
-) -> f64 {
+/// Predicted time of a candidate at `level`; 0 when not drawn.
+pub fn cost_us(model: &CostModel, rates: &TableRates, candidate: &Candidate, level: Level) -> f64 {
     if !level.is_drawn() {
         return 0.0;
     }
-    let geometry_us = rates.geometry_us(candidates.table[i], level);
-    model.object_us(geometry_us, f64::from(candidates.cost_scale[i]), f64::from(candidates.area_px2[i]))
+    let geometry_us = rates.geometry_us(candidate.table, level);
+    model.object_us(geometry_us, f64::from(candidate.cost_scale), f64::from(candidate.area_px2))
+}
+
+/// Appends the candidates of a group of one view without their details: slots, weights and the sum of areas. The caller
+/// closes the run with [`Candidates::end_group`]. Candidates must not be detailed.
+pub fn weigh(objects: &Objects, seen: &Seen, model: &BenefitModel, candidates: &mut Candidates) {
+    let lens = &seen.lens;
+    for &VisibleBlock { block: index, mask } in &seen.visible {
+        let block = &objects.blocks()[index as usize];
+        let mut area = [0.0; BLOCK];
+        for (lane, area) in area.iter_mut().enumerate() {
+            *area = lens.area_px2(&block.sphere(lane));
+        }
+        let costly = costly_areas(objects, index, block, &area, mask);
+        candidates.pixels.add((0..BLOCK).map(|lane| costly[lane]).sum());
+        if !model.is_plain() {
+            attend(objects, index, block, lens, mask, model, &mut area);
+        }
+        for (weight, gain) in area.iter_mut().zip(&block.gain) {
+            *weight *= gain;
+        }
+        candidates.push_row(index, mask, &area);
+    }
+}
+
+/// The areas of the lanes of `mask` as they count for the pixel stage, rounded so that their sum is exact.
+fn costly_areas(
+    objects: &Objects,
+    index: u32,
+    block: &Block,
+    area: &[f32; BLOCK],
+    mask: u16,
+) -> [f64; BLOCK] {
+    let mut costly = [0.0; BLOCK];
+    for (lane, costly) in costly.iter_mut().enumerate() {
+        *costly = PixelSum::rounded(area[lane]);
+    }
+    for lane in lanes(block.special & mask) {
+        let multiplier = objects.settings(index as usize * BLOCK + lane).cost_multiplier;
+        costly[lane] = PixelSum::rounded(area[lane] * multiplier);
+    }
+    for lane in lanes(!mask) {
+        costly[lane] = 0.0;
+    }
+    costly
+}
+
+/// Weighs the areas of the lanes of `mask` by focus and motion.
+fn attend(
+    objects: &Objects,
+    index: u32,
+    block: &Block,
+    lens: &Lens,
+    mask: u16,
+    model: &BenefitModel,
+    area: &mut [f32; BLOCK],
+) {
+    for lane in lanes(mask) {
+        let velocity = match block.special & (1 << lane) {
+            0 => Vec3::ZERO,
+            _ => objects.settings(index as usize * BLOCK + lane).velocity,
+        };
+        area[lane] *= model.attention(lens, &block.sphere(lane), velocity);
+    }
+}
+
+/// A candidate of a group of one view, its details worked out from the object.
+pub fn details(objects: &Objects, rates: &TableRates, lens: &Lens, slot: u32, weight: f32) -> Candidate {
+    let (block, lane) = (&objects.blocks()[slot as usize / BLOCK], slot as usize % BLOCK);
+    let (area_px2, size_px, near_px) = lens.project(&block.sphere(lane));
+    let table = block.table[lane];
+    let allowed = rates.whole(table);
+    let mut candidate =
+        Candidate { slot, table, allowed, weight, cost_scale: 1.0, size_px, near_px, area_px2 };
+    if block.special & (1 << lane) != 0 {
+        heed(&mut candidate, objects.settings(slot as usize), rates.levels(table).len());
+    }
+    candidate
 }
 
 /// What the views of a group see of one block: a column per quantity, sums and maxima over the views.
@@ -106,13 +178,7 @@ impl Rows {
     ) {
         let mut area = project(self, block, lens, mask);
         if !model.is_plain() {
-            for lane in lanes(mask) {
-                let velocity = match block.special & (1 << lane) {
-                    0 => Vec3::ZERO,
-                    _ => objects.settings(index as usize * BLOCK + lane).velocity,
-                };
-                area[lane] *= model.attention(lens, &block.sphere(lane), velocity);
-            }
+            attend(objects, index, block, lens, mask, model, &mut area);
         }
         for (weight, (area, gain)) in self.weight.iter_mut().zip(area.iter().zip(&block.gain)) {
             *weight += area * gain;
@@ -147,41 +213,29 @@ fn push_rows(
     model: &BenefitModel,
     candidates: &mut Candidates,
 ) {
-    let first = candidates.len();
+    candidates.push_row(index, rows.mask, &rows.weight);
     let slot = index * BLOCK as u32;
-    if rows.mask == u16::MAX {
-        candidates.slot.extend((0..BLOCK as u32).map(|lane| slot + lane));
-        candidates.table.extend_from_slice(&block.table);
-        candidates.weight.extend_from_slice(&rows.weight);
-        candidates.cost_scale.extend_from_slice(&rows.views);
-        candidates.size_px.extend_from_slice(&rows.size_px);
-        candidates.near_px.extend_from_slice(&rows.near_px);
-        candidates.area_px2.extend_from_slice(&rows.area_px2);
-    } else {
-        candidates.slot.extend(lanes(rows.mask).map(|lane| slot + lane as u32));
-        candidates.table.extend(lanes(rows.mask).map(|lane| block.table[lane]));
-        candidates.weight.extend(lanes(rows.mask).map(|lane| rows.weight[lane]));
-        candidates.cost_scale.extend(lanes(rows.mask).map(|lane| rows.views[lane]));
-        candidates.size_px.extend(lanes(rows.mask).map(|lane| rows.size_px[lane]));
-        candidates.near_px.extend(lanes(rows.mask).map(|lane| rows.near_px[lane]));
-        candidates.area_px2.extend(lanes(rows.mask).map(|lane| rows.area_px2[lane]));
-    }
-    let Candidates { table, allowed, .. } = candidates;
-    allowed.extend(table[first..].iter().map(|&table| rates.whole(table)));
-    candidates.forget_memory();
-    let heeds_error = model.enough_px > 0.0;
-    if block.special & rows.mask != 0 || heeds_error {
-        for (i, lane) in lanes(rows.mask).enumerate() {
-            let mut candidate = candidates.get(first + i);
-            let levels = rates.levels(candidate.table);
-            if block.special & (1 << lane) != 0 {
-                heed(&mut candidate, objects.settings(slot as usize + lane), levels.len());
-            }
-            if heeds_error {
-                spare(&mut candidate, levels, model.enough_px);
-            }
-            candidates.set(first + i, candidate);
+    for lane in lanes(rows.mask) {
+        let table = block.table[lane];
+        let mut candidate = Candidate {
+            slot: slot + lane as u32,
+            table,
+            allowed: rates.whole(table),
+            weight: rows.weight[lane],
+            cost_scale: rows.views[lane],
+            size_px: rows.size_px[lane],
+            near_px: rows.near_px[lane],
+            area_px2: rows.area_px2[lane],
+        };
+        let levels = rates.levels(table);
+        if block.special & (1 << lane) != 0 {
+            heed(&mut candidate, objects.settings(slot as usize + lane), levels.len());
         }
+        if model.enough_px > 0.0 {
+            spare(&mut candidate, levels, model.enough_px);
+        }
+        candidates.pixels.add(PixelSum::rounded(candidate.area_px2));
+        candidates.push_details(candidate);
     }
 }
 
@@ -204,16 +258,4 @@ fn spare(candidate: &mut Candidate, levels: &[LevelRate], enough_px: f32) {
     let finest = candidate.allowed.finest.index();
     let enough = (finest..=last).rev().find(|&l| levels[l].error * candidate.near_px <= enough_px);
     candidate.allowed.finest = Level(enough.unwrap_or(finest) as u8);
-}
-
-/// The positions of the bits of `mask`, ascending.
-pub(crate) fn lanes(mask: u16) -> impl Iterator<Item = usize> {
-    let mut rest = mask;
-    std::iter::from_fn(move || {
-        let lane = rest.trailing_zeros() as usize;
-        (rest != 0).then(|| {
-            rest &= rest - 1;
-            lane
-        })
-    })
 }

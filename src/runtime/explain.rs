@@ -29,18 +29,17 @@ impl Runtime {
     /// Why an object is shown as it was in the last frame. `None` when it was not in view of the group.
     pub fn explain(&self, objects: &Objects, group: GroupId, id: ObjectId) -> Option<Explanation> {
         let slot = objects.slot_of(id)? as u32;
-        let candidates = &self.scratch.candidates;
-        let range = candidates.range(group);
-        let i = range.start + candidates.slot[range].binary_search(&slot).ok()?;
+        let i = self.scratch.candidates.find(group, slot)?;
+        let candidate = self.last_frame(objects).candidate(i);
         let shown = self.group(group)?.visible(slot as usize)?;
-        let rates = self.rates.levels(candidates.table[i]);
+        let rates = self.rates.levels(candidate.table);
         let error = rates.get(shown.level.index()).map_or(0.0, |l| l.error);
         Some(Explanation {
             wanted: self.scratch.levels[i],
             shown,
             cause: self.cause(objects, i, shown),
-            size_px: candidates.size_px[i],
-            error_px: error * candidates.near_px[i],
+            size_px: candidate.size_px,
+            error_px: error * candidate.near_px,
             next_value: self.next_value(objects, i, shown.level),
             lambda: self.report.select.certificate.map_or(0.0, |c| c.lambda),
         })
@@ -49,16 +48,15 @@ impl Runtime {
     /// Why candidate `i` is shown as it is and not finer. The first reason that applies, in the order of precedence:
     /// resident > forced > clamp > budget > dwell and hysteresis.
     pub(super) fn cause(&self, objects: &Objects, i: usize, shown: Shown) -> Cause {
-        let candidates = &self.scratch.candidates;
-        let allowed = candidates.allowed[i];
+        let candidate = self.last_frame(objects).candidate(i);
         if shown.is_in_flight() || shown.level != self.scratch.levels[i] {
             Cause::Fading
         } else if !shown.level.is_drawn() {
             Cause::TooSmall
         } else if shown.level == Level::FINEST {
             Cause::Finest
-        } else if shown.level == allowed.finest {
-            narrowed_by(objects.settings(candidates.slot[i] as usize), shown.level)
+        } else if shown.level == candidate.allowed.finest {
+            narrowed_by(objects.settings(candidate.slot as usize), shown.level)
         } else {
             self.selector.cause(&self.last_frame(objects), i, shown.level)
         }
@@ -66,8 +64,8 @@ impl Runtime {
 
     fn next_value(&self, objects: &Objects, i: usize, level: Level) -> f64 {
         let frame = self.last_frame(objects);
-        let allowed = self.scratch.candidates.allowed[i];
-        let finer = frame.rates.drawn(self.scratch.candidates.table[i], allowed).rfind(|&(l, _)| l < level);
+        let candidate = frame.candidate(i);
+        let finer = frame.rates.drawn(candidate.table, candidate.allowed).rfind(|&(l, _)| l < level);
         finer.map_or(0.0, |(finer, _)| {
             let cost = frame.cost_us(i, finer) - frame.cost_us(i, level);
             let gain = frame.benefit(i, finer) - frame.benefit(i, level);

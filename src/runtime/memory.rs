@@ -1,25 +1,48 @@
-//! What is remembered of earlier frames, per view group and slot.
+//! What is remembered of earlier frames, per view group and slot: sixteen slots to a block, as the objects are.
 
-use crate::frame::{Cause, Change, GroupId};
-use crate::scene::{ObjectId, Objects};
+use crate::frame::{Candidates, Cause, Change, GroupId, NO_PLACE, Row};
+use crate::rate::TableRates;
+use crate::scene::{BLOCK, ObjectId, Objects, lanes};
 use crate::table::Level;
 use crate::transition::Shown;
 
-/// What is remembered of one object in one group.
+/// What is remembered of the objects of a block.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SlotState {
-    /// The level that the policy wants.
-    pub wanted: Level,
-    /// What is shown.
-    pub shown: Shown,
-    /// The last of the group's frames in which the object was in view. Memory ends when it leaves.
-    seen: u32,
+#[repr(C, align(64))]
+struct BlockMemory {
+    /// See [`Candidates::place`].
+    place: [u32; BLOCK],
     /// Since when the level is wanted, by the group's clock in whole milliseconds, which wraps after seven weeks.
-    since_ms: u32,
+    since_ms: [u32; BLOCK],
+    /// The level that the policy wants.
+    wanted: [Level; BLOCK],
+    /// The revision of the objects' block that the places hold for; 0 for none.
+    revision: u64,
+    /// The last of the group's frames in which some of the block was in view.
+    frame: u32,
+    /// Bit per lane: it was in view in that frame. Memory ends when an object leaves.
+    seen: u16,
+    /// Bit per lane: something else is shown than the level that is wanted. See [`GroupMemory::unsteady`].
+    unsteady: u16,
 }
 
-impl SlotState {
-    const UNSEEN: Self = Self { wanted: Level::NOT_DRAWN, shown: Shown::NOTHING, seen: 0, since_ms: 0 };
+impl BlockMemory {
+    const EMPTY: Self = Self {
+        place: [NO_PLACE; BLOCK],
+        since_ms: [0; BLOCK],
+        wanted: [Level::NOT_DRAWN; BLOCK],
+        revision: 0,
+        frame: 0,
+        seen: 0,
+        unsteady: 0,
+    };
+}
+
+/// What is shown in a slot where it is not simply the level that is wanted.
+#[derive(Clone, Copy, Debug)]
+struct Unsteady {
+    slot: u32,
+    shown: Shown,
 }
 
 /// The memory of one view group.
@@ -29,12 +52,15 @@ pub(super) struct GroupMemory {
     /// The group's own count of frames. The first is 2, so that no slot seems to have been seen in the one before.
     frame: u32,
     clock_ms: f64,
-    states: Vec<SlotState>,
-    /// Slots in view in this frame and in the one before, ascending.
-    visible: Vec<u32>,
-    before: Vec<u32>,
-    /// How many of the slots in view were in view in the frame before.
-    stayed: usize,
+    blocks: Vec<BlockMemory>,
+    /// Slots with an unsteady bit, ascending; those of this frame's end are in `fresh`.
+    unsteady: Vec<Unsteady>,
+    fresh: Vec<Unsteady>,
+    /// What is in view in this frame, and what was in the one before.
+    rows: Vec<Row>,
+    before: Vec<Row>,
+    /// How many objects in view were in view in the frame before.
+    stayed: u32,
 }
 
 /// The memory of a group, made when first asked for.
@@ -46,88 +72,169 @@ pub(super) fn of_group(groups: &mut Vec<GroupMemory>, id: GroupId) -> &mut Group
     &mut groups[at]
 }
 
+/// What places are looked up in.
+#[derive(Clone, Copy)]
+pub(super) struct Places<'a> {
+    pub objects: &'a Objects,
+    pub rates: &'a TableRates,
+    /// Whether the group has one view, so that every object counts once.
+    pub once: bool,
+}
+
+impl Places<'_> {
+    /// The place of a level of the object in `slot`.
+    pub fn of(&self, slot: usize, level: Level) -> u32 {
+        let (block, lane) = (&self.objects.blocks()[slot / BLOCK], slot % BLOCK);
+        let plain = self.once && block.special & (1 << lane) == 0;
+        if plain && level.is_drawn() { self.rates.index(block.table[lane], level) as u32 } else { NO_PLACE }
+    }
+}
+
 impl GroupMemory {
     fn new(id: GroupId) -> Self {
         Self {
             id,
             frame: 1,
             clock_ms: 0.0,
-            states: Vec::new(),
-            visible: Vec::new(),
+            blocks: Vec::new(),
+            unsteady: Vec::new(),
+            fresh: Vec::new(),
+            rows: Vec::new(),
             before: Vec::new(),
             stayed: 0,
         }
     }
 
-    /// Starts a frame at `clock_ms` over so many slots; returns the time since the group's last one.
-    pub fn begin_frame(&mut self, slots: usize, clock_ms: f64) -> f64 {
-        self.states.resize(slots, SlotState::UNSEEN);
+    /// Starts a frame at `clock_ms` over so many blocks; returns the time since the group's last one.
+    pub fn begin_frame(&mut self, blocks: usize, clock_ms: f64) -> f64 {
+        self.blocks.resize(blocks, BlockMemory::EMPTY);
         self.frame += 1;
         self.stayed = 0;
-        std::mem::swap(&mut self.visible, &mut self.before);
-        self.visible.clear();
+        std::mem::swap(&mut self.rows, &mut self.before);
+        self.rows.clear();
         clock_ms - std::mem::replace(&mut self.clock_ms, clock_ms)
     }
 
-    /// Notes that a slot is in view; its state if it was in view in the last frame as well.
-    pub fn recall(&mut self, slot: u32) -> Option<&mut SlotState> {
-        self.visible.push(slot);
-        let state = &mut self.states[slot as usize];
-        let remembered = state.seen + 1 == self.frame;
-        state.seen = self.frame;
-        self.stayed += usize::from(remembered);
-        remembered.then_some(state)
-    }
-
-    /// How long the level of a state has been wanted.
-    pub fn age_ms(clock_ms: f64, state: &SlotState) -> u32 {
-        whole_ms(clock_ms).wrapping_sub(state.since_ms)
-    }
-
-    /// The state of a slot that is in view.
-    pub fn state(&mut self, slot: u32) -> &mut SlotState {
-        &mut self.states[slot as usize]
+    /// Notes that the candidates of a row are in view, and adds what is remembered of them to the candidates and to
+    /// `levels`. The row learns which of its objects were in view in the last frame as well.
+    pub fn recall(
+        &mut self,
+        row: &mut Row,
+        places: Places<'_>,
+        candidates: &mut Candidates,
+        levels: &mut Vec<Level>,
+    ) {
+        let now_ms = whole_ms(self.clock_ms);
+        let memory = &mut self.blocks[row.block as usize];
+        row.known = if memory.frame + 1 == self.frame { memory.seen & row.mask } else { 0 };
+        (memory.frame, memory.seen) = (self.frame, row.mask);
+        self.stayed += row.known.count_ones();
+        self.rows.push(*row);
+        let revision = places.objects.block_revisions()[row.block as usize];
+        if memory.revision != revision {
+            memory.renew(row, places, &mut self.unsteady);
+            memory.revision = if places.once { revision } else { 0 };
+        }
+        if row.known == u16::MAX {
+            candidates.previous.extend(memory.wanted.iter().map(|&level| Some(level)));
+            candidates.age_ms.extend(memory.since_ms.iter().map(|&since| now_ms.wrapping_sub(since)));
+            candidates.place.extend_from_slice(&memory.place);
+            levels.extend_from_slice(&memory.wanted);
+        } else {
+            memory.recall_lanes(row, now_ms, candidates, levels);
+        }
     }
 
     /// What is shown in a slot that is in view.
     pub fn shown_at(&self, slot: u32) -> Shown {
-        self.states[slot as usize].shown
+        let (memory, lane) = (&self.blocks[slot as usize / BLOCK], slot as usize % BLOCK);
+        let unsteady = match memory.unsteady & (1 << lane) {
+            0 => None,
+            _ => self.unsteady.binary_search_by_key(&slot, |u| u.slot).ok(),
+        };
+        unsteady.map_or(Shown::steady(memory.wanted[lane]), |at| self.unsteady[at].shown)
     }
 
     /// What is shown in a slot; `None` when it was not in view in the group's last frame.
     pub fn visible(&self, slot: usize) -> Option<Shown> {
-        self.states.get(slot).filter(|s| s.seen == self.frame).map(|s| s.shown)
+        let memory = self.blocks.get(slot / BLOCK).filter(|m| m.frame == self.frame)?;
+        (memory.seen & (1 << (slot % BLOCK)) != 0).then(|| self.shown_at(slot as u32))
     }
 
     /// Everything that was in view in the group's last frame, slots ascending.
     pub fn shown(&self) -> impl Iterator<Item = (usize, Shown)> + '_ {
-        self.visible.iter().map(|&slot| (slot as usize, self.states[slot as usize].shown))
+        let slots = self.rows.iter().flat_map(|row| slots_of(row.block, row.mask));
+        slots.map(|slot| (slot as usize, self.shown_at(slot)))
+    }
+
+    /// The slots that are in view, were in view before, and do not simply show what was wanted; what they show.
+    pub fn unsteady(&mut self) -> impl Iterator<Item = (u32, &mut Shown)> {
+        let (blocks, frame) = (&self.blocks, self.frame);
+        let stays = move |u: &&mut Unsteady| {
+            let memory = &blocks[u.slot as usize / BLOCK];
+            memory.frame == frame && memory.seen & memory.unsteady & (1 << (u.slot as usize % BLOCK)) != 0
+        };
+        self.unsteady.iter_mut().filter(stays).map(|u| (u.slot, &mut u.shown))
     }
 
     /// An object has come into view: it is shown as wanted at once.
-    pub fn enter(&mut self, slot: u32, wanted: Level) {
+    pub fn enter(&mut self, slot: u32, wanted: Level, place: u32) {
         // Coming into view is no switch: the level counts as one that is long wanted.
         let since_ms = whole_ms(self.clock_ms).wrapping_sub(LONG_AGO_MS);
-        let state = &mut self.states[slot as usize];
-        *state = SlotState { wanted, shown: Shown::steady(wanted), since_ms, ..*state };
+        self.blocks[slot as usize / BLOCK].set(slot, wanted, place, since_ms);
+        self.blocks[slot as usize / BLOCK].unsteady &= !(1 << (slot as usize % BLOCK));
     }
 
     /// Notes that something else is wanted than before.
-    pub fn want(&mut self, slot: u32, wanted: Level) {
+    pub fn want(&mut self, slot: u32, wanted: Level, place: u32) {
         let since_ms = whole_ms(self.clock_ms);
-        let state = &mut self.states[slot as usize];
-        *state = SlotState { wanted, since_ms, ..*state };
+        self.blocks[slot as usize / BLOCK].set(slot, wanted, place, since_ms);
+    }
+
+    /// Notes what is shown in a slot in view; once per slot and frame. Reading it may yield what was shown before until
+    /// the end of the frame.
+    pub fn show(&mut self, slot: u32, shown: Shown) {
+        let (memory, lane) = (&mut self.blocks[slot as usize / BLOCK], slot as usize % BLOCK);
+        let was_unsteady = memory.unsteady & (1 << lane) != 0;
+        if shown == Shown::steady(memory.wanted[lane]) {
+            memory.unsteady &= !(1 << lane);
+        } else if was_unsteady {
+            let at = self.unsteady.binary_search_by_key(&slot, |u| u.slot);
+            at.into_iter().for_each(|at| self.unsteady[at].shown = shown);
+        } else {
+            self.fresh.push(Unsteady { slot, shown });
+        }
     }
 
     /// Lists what has left the view since the group's last frame.
-    pub fn end_frame(&self, objects: &Objects, changes: &mut Vec<Change>) {
-        if self.stayed == self.before.len() {
-            return;
+    pub fn end_frame(&mut self, objects: &Objects, changes: &mut Vec<Change>) {
+        if self.stayed != self.before.iter().map(|row| row.mask.count_ones()).sum::<u32>() {
+            self.list_leavers(objects, changes);
         }
-        for &slot in &self.before {
-            let state = &self.states[slot as usize];
-            if let Some(object) = objects.id_of(slot as usize).filter(|_| state.seen + 1 == self.frame) {
-                self.leave(object, state.shown.level, changes);
+        let (blocks, frame) = (&mut self.blocks, self.frame);
+        self.unsteady.retain(|u| {
+            let (memory, bit) = (&mut blocks[u.slot as usize / BLOCK], 1 << (u.slot as usize % BLOCK));
+            let in_view = memory.frame == frame && memory.seen & bit != 0;
+            memory.unsteady &= if in_view { u16::MAX } else { !bit };
+            memory.unsteady & bit != 0
+        });
+        for fresh in &self.fresh {
+            blocks[fresh.slot as usize / BLOCK].unsteady |= 1 << (fresh.slot as usize % BLOCK);
+        }
+        if !self.fresh.is_empty() {
+            self.unsteady.append(&mut self.fresh);
+            self.unsteady.sort_unstable_by_key(|u| u.slot);
+        }
+    }
+
+    fn list_leavers(&self, objects: &Objects, changes: &mut Vec<Change>) {
+        for row in &self.before {
+            let memory = &self.blocks[row.block as usize];
+            let stayed = if memory.frame == self.frame { memory.seen } else { 0 };
+            for slot in slots_of(row.block, row.mask & !stayed) {
+                if let Some(object) = objects.id_of(slot as usize) {
+                    self.leave(object, self.shown_at(slot).level, changes);
+                }
             }
         }
     }
@@ -139,32 +246,139 @@ impl GroupMemory {
         }
     }
 
-    /// Carries states to the slots that their objects live in now. `tenants` are those of before.
-    fn follow(&mut self, objects: &Objects, tenants: &[Option<ObjectId>], changes: &mut Vec<Change>) {
-        let mut moved = Vec::new();
-        self.visible.retain(|&slot| {
-            let Some(id) = tenants[slot as usize] else { return true };
-            let stays = objects.id_of(slot as usize) == Some(id);
-            if !stays {
-                moved.push((id, std::mem::replace(&mut self.states[slot as usize], SlotState::UNSEEN)));
-            }
-            stays
-        });
-        self.states.resize(objects.blocks().len() * crate::scene::BLOCK, SlotState::UNSEEN);
-        let arrived = self.visible.len();
+    /// Carries what is remembered to the slots that objects live in now. `tenants` are those of before; blocks that
+    /// have not changed since `revision` are passed over.
+    fn follow(
+        &mut self,
+        objects: &Objects,
+        tenants: &[Option<ObjectId>],
+        revision: u64,
+        changes: &mut Vec<Change>,
+    ) {
+        let moved = self.take_moved(objects, tenants, revision);
+        self.blocks.resize(objects.blocks().len(), BlockMemory::EMPTY);
         for (id, state) in moved {
             match objects.slot_of(id) {
-                Some(slot) => {
-                    self.states[slot] = state;
-                    self.visible.push(slot as u32);
-                }
+                Some(slot) => self.put(slot, state),
                 None => self.leave(id, state.shown.level, changes),
             }
         }
-        if self.visible.len() > arrived {
-            self.visible.sort_unstable();
+        self.rows.sort_unstable_by_key(|row| row.block);
+        self.rows.dedup_by_key(|row| row.block);
+        let (blocks, frame) = (&self.blocks, self.frame);
+        self.rows.retain_mut(|row| {
+            // A row stays though nothing of it is left: its block goes on counting as one that has a row.
+            let memory = blocks.get(row.block as usize).filter(|m| m.frame == frame);
+            row.mask = memory.map_or(0, |m| m.seen);
+            memory.is_some()
+        });
+        self.unsteady.append(&mut self.fresh);
+        self.unsteady.sort_unstable_by_key(|u| u.slot);
+    }
+
+    /// Forgets the objects in view whose slots have new tenants, and returns what was remembered of them.
+    fn take_moved(
+        &mut self,
+        objects: &Objects,
+        tenants: &[Option<ObjectId>],
+        revision: u64,
+    ) -> Vec<(ObjectId, Moved)> {
+        let mut moved = Vec::new();
+        let changed =
+            |block: u32| objects.block_revisions().get(block as usize).is_none_or(|&r| r > revision);
+        for at in (0..self.rows.len()).filter(|&at| changed(self.rows[at].block)) {
+            let row = self.rows[at];
+            for slot in slots_of(row.block, row.mask) {
+                let Some(id) = tenants[slot as usize].filter(|&id| objects.id_of(slot as usize) != Some(id))
+                else {
+                    continue;
+                };
+                let shown = self.shown_at(slot);
+                let (memory, lane) = (&mut self.blocks[row.block as usize], slot as usize % BLOCK);
+                moved.push((
+                    id,
+                    Moved { wanted: memory.wanted[lane], since_ms: memory.since_ms[lane], shown },
+                ));
+                memory.seen &= !(1 << lane);
+                memory.unsteady &= !(1 << lane);
+            }
+        }
+        let blocks = &self.blocks;
+        self.unsteady
+            .retain(|u| blocks[u.slot as usize / BLOCK].unsteady & (1 << (u.slot as usize % BLOCK)) != 0);
+        moved
+    }
+
+    /// Remembers an object in its new slot.
+    fn put(&mut self, slot: usize, state: Moved) {
+        let (memory, lane) = (&mut self.blocks[slot / BLOCK], slot % BLOCK);
+        if memory.frame != self.frame {
+            (memory.frame, memory.seen) = (self.frame, 0);
+            self.rows.push(Row { block: (slot / BLOCK) as u32, mask: 0, known: 0, first: 0 });
+        }
+        memory.seen |= 1 << lane;
+        memory.set(slot as u32, state.wanted, NO_PLACE, state.since_ms);
+        if state.shown != Shown::steady(state.wanted) {
+            memory.unsteady |= 1 << lane;
+            self.fresh.push(Unsteady { slot: slot as u32, shown: state.shown });
         }
     }
+}
+
+/// What is remembered of an object on its way to another slot.
+#[derive(Clone, Copy)]
+struct Moved {
+    wanted: Level,
+    since_ms: u32,
+    shown: Shown,
+}
+
+impl BlockMemory {
+    fn set(&mut self, slot: u32, wanted: Level, place: u32, since_ms: u32) {
+        let lane = slot as usize % BLOCK;
+        self.wanted[lane] = wanted;
+        self.place[lane] = place;
+        self.since_ms[lane] = since_ms;
+    }
+
+    /// Looks up the places anew, and cuts what is wanted to tables that may be others by now.
+    fn renew(&mut self, row: &Row, places: Places<'_>, unsteady: &mut Vec<Unsteady>) {
+        for slot in slots_of(row.block, row.known) {
+            let lane = slot as usize % BLOCK;
+            let (wanted, table) =
+                (self.wanted[lane], places.objects.blocks()[row.block as usize].table[lane]);
+            if wanted.is_drawn() && wanted > places.rates.coarsest(table) {
+                self.wanted[lane] = places.rates.coarsest(table);
+                self.keep_showing(slot, Shown::steady(wanted), unsteady);
+            }
+            self.place[lane] = places.of(slot as usize, self.wanted[lane]);
+        }
+    }
+
+    /// Goes on showing what is shown where something else is wanted of a sudden.
+    fn keep_showing(&mut self, slot: u32, shown: Shown, unsteady: &mut Vec<Unsteady>) {
+        let bit = 1 << (slot as usize % BLOCK);
+        if self.unsteady & bit == 0 {
+            let at = unsteady.partition_point(|u| u.slot < slot);
+            unsteady.insert(at, Unsteady { slot, shown });
+            self.unsteady |= bit;
+        }
+    }
+
+    /// [`GroupMemory::recall`] where the row is not full, or not all of it is known.
+    fn recall_lanes(&self, row: &Row, now_ms: u32, candidates: &mut Candidates, levels: &mut Vec<Level>) {
+        for lane in lanes(row.mask) {
+            let known = row.known & (1 << lane) != 0;
+            candidates.previous.push(known.then_some(self.wanted[lane]));
+            candidates.age_ms.push(if known { now_ms.wrapping_sub(self.since_ms[lane]) } else { 0 });
+            candidates.place.push(if known { self.place[lane] } else { NO_PLACE });
+            levels.push(if known { self.wanted[lane] } else { Level::NOT_DRAWN });
+        }
+    }
+}
+
+fn slots_of(block: u32, mask: u16) -> impl Iterator<Item = u32> {
+    lanes(mask).map(move |lane| block * BLOCK as u32 + lane as u32)
 }
 
 /// Longer than any dwell: 12 days.
@@ -182,37 +396,56 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// How many slots there are.
-    pub fn slots(&self) -> usize {
-        self.tenants.len()
-    }
-
     /// Carries every group's memory along when objects have come, gone or changed their slots. Lists those that have
     /// gone while in view.
     pub fn follow(&mut self, objects: &Objects, groups: &mut [GroupMemory], changes: &mut Vec<Change>) {
-        if self.revision.replace(objects.layout_revision()) == Some(objects.layout_revision()) {
+        let now = objects.layout_revision();
+        let before = self.revision.replace(now);
+        if before == Some(now) {
             return;
         }
+        let since = before.unwrap_or(0);
         for group in groups {
-            group.follow(objects, &self.tenants, changes);
+            group.follow(objects, &self.tenants, since, changes);
         }
-        self.tenants.clear();
-        self.tenants
-            .extend((0..objects.blocks().len() * crate::scene::BLOCK).map(|slot| objects.id_of(slot)));
+        self.tenants.resize(objects.blocks().len() * BLOCK, None);
+        for (block, tenants) in self.tenants.chunks_exact_mut(BLOCK).enumerate() {
+            if before.is_none() || objects.block_revisions()[block] > since {
+                let slots = block * BLOCK..;
+                tenants.iter_mut().zip(slots).for_each(|(tenant, slot)| *tenant = objects.id_of(slot));
+            }
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::Sphere;
+    use crate::rate::CostModel;
+    use crate::scene::Object;
+    use crate::table::{LevelRecord, LodTable};
+    use glam::Vec3;
 
     #[test]
     fn nothing_is_remembered_in_the_first_frame() {
+        let mut objects = Objects::new();
+        let table = LodTable::new("box", Sphere::new(Vec3::ZERO, 1.0), vec![LevelRecord::new(12, 8)]);
+        let table = objects.add_table(table.expect("a good table")).expect("room");
+        objects.insert(Object::new(0, Sphere::new(Vec3::ZERO, 1.0), table)).expect("new");
+        let mut rates = TableRates::default();
+        rates.renew(objects.tables(), &CostModel::default());
+        let places = Places { objects: &objects, rates: &rates, once: false };
         let mut memory = GroupMemory::new(GroupId(0));
+        let (mut candidates, mut levels) = (Candidates::default(), Vec::new());
+        let mut row = Row { block: 0, mask: 1, known: 0, first: 0 };
         memory.begin_frame(1, 0.0);
-        assert!(memory.recall(0).is_none());
-        memory.enter(0, Level(1));
+        memory.recall(&mut row, places, &mut candidates, &mut levels);
+        assert_eq!(row.known, 0);
+        memory.enter(0, Level::FINEST, NO_PLACE);
         memory.begin_frame(1, 16.0);
-        assert!(memory.recall(0).is_some());
+        memory.recall(&mut row, places, &mut candidates, &mut levels);
+        assert_eq!(row.known, 1);
+        assert_eq!(candidates.previous, [None, Some(Level::FINEST)]);
     }
 }

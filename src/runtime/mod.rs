@@ -16,15 +16,15 @@ use std::ops::Range;
 use crate::cull::{BlockTree, CullOptions, CullReport};
 use crate::feedback::{Feedback, FeedbackOptions, Prediction};
 use crate::frame::OptionsError;
-use crate::frame::{Candidates, Change, FrameId, FrameReport, FrameTime, GroupId};
+use crate::frame::{Candidates, Change, FrameId, FrameReport, FrameTime, GroupEnd, GroupId};
 use crate::knapsack::FixedSum;
-use crate::rate::{BenefitModel, CostModel, Drivers, Seen, TableRates, cost_us, rate};
-use crate::scene::{ObjectId, Objects};
-use crate::select::{Frame, Selector};
+use crate::rate::{BenefitModel, CostModel, Drivers, Seen, Stages, TableRates, rate, weigh};
+use crate::scene::{BLOCK, ObjectId, Objects};
+use crate::select::{Frame, Needs, Selector};
 use crate::table::Level;
 use crate::transition::{Shown, TransitionKind, TransitionOptions, follow};
 use crate::view::View;
-use memory::{GroupMemory, Layout};
+use memory::{GroupMemory, Layout, Places};
 use tally::Tally;
 
 /// Options of a [`Runtime`].
@@ -129,10 +129,11 @@ struct Scratch {
     levels: Vec<Level>,
     /// Candidates whose transition is in flight, or who were not shown as wanted in the last frame.
     unsteady: Vec<usize>,
-    /// Candidates that have come into view, or are not shown as they are wanted.
+    /// Candidates that have come into view, or are not shown as they are wanted: of one group, and of all.
     news: Vec<usize>,
-    /// Candidates whose shown level is not the one that is wanted.
-    requests: Vec<usize>,
+    all_news: Vec<usize>,
+    /// Candidates whose shown level is not the one that is wanted, and what they show.
+    requests: Vec<(usize, Shown)>,
     tally: Tally,
 }
 
@@ -167,7 +168,7 @@ impl Runtime {
     pub fn frame(&mut self, objects: &mut Objects, input: &FrameInput<'_>) -> &FrameReport {
         self.begin(objects, input);
         self.find_candidates(objects, input);
-        let fades_us = self.remember();
+        let fades_us = self.remember(objects);
         self.choose(objects, input.budget_us, fades_us);
         self.show(objects);
         self.account(objects, input.activity);
@@ -200,7 +201,8 @@ impl Runtime {
         self.feedback.model()
     }
 
-    /// The candidates of the last frame.
+    /// The candidates of the last frame. Those of a policy that does without details have none:
+    /// [`Frame::detailed`] of [`Runtime::last_frame`] fills them in.
     pub fn candidates(&self) -> &Candidates {
         &self.scratch.candidates
     }
@@ -212,15 +214,7 @@ impl Runtime {
 
     /// The last frame as the selector saw it.
     pub fn last_frame<'a>(&'a self, objects: &'a Objects) -> Frame<'a> {
-        Frame {
-            id: self.report.frame,
-            objects,
-            candidates: &self.scratch.candidates,
-            rates: &self.rates,
-            model: self.feedback.model(),
-            budget: self.report.budget,
-            timing: self.feedback.timing(),
-        }
+        frame_of(objects, &self.scratch.candidates, &self.rates, &self.feedback, &self.report)
     }
 
     /// Forgets everything learnt and shown, as if no frame had been run; the next changes start from nothing. The next
@@ -235,7 +229,7 @@ impl Runtime {
         self.clock_ms = 0.0;
         self.report = FrameReport::default();
         self.changes.clear();
-        self.scratch.candidates.clear();
+        self.scratch.candidates.clear(0);
         self.scratch.levels.clear();
     }
 
@@ -263,12 +257,8 @@ impl Runtime {
     /// Culls every view and rates what each group sees.
     fn find_candidates(&mut self, objects: &Objects, input: &FrameInput<'_>) {
         let views = input.views;
-        let Scratch { order, candidates, .. } = &mut self.scratch;
-        candidates.clear();
-        order.clear();
-        order.extend((0..views.len()).filter(|&i| views[i].view.check().is_ok()));
-        order.sort_unstable_by_key(|&i| (views[i].group, i));
-        self.report.broken_views = views.len() - order.len();
+        let in_detail = self.order_views(views);
+        self.scratch.candidates.clear(self.rates.len());
         let mut first = 0;
         while let Some(&view) = self.scratch.order.get(first) {
             let group = views[view].group;
@@ -276,11 +266,31 @@ impl Runtime {
             let count = rest.iter().take_while(|&&i| views[i].group == group).count();
             self.cull_group(objects, views, first..first + count);
             let Scratch { seen, cursors, candidates, .. } = &mut self.scratch;
-            rate(objects, &self.rates, &seen[..count], &self.options.benefit, cursors, candidates);
-            candidates.end_group(group, views[view].view.viewport_px.y);
+            if in_detail {
+                rate(objects, &self.rates, &seen[..count], &self.options.benefit, cursors, candidates);
+            } else {
+                weigh(objects, &seen[0], &self.options.benefit, candidates);
+            }
+            candidates.end_group(group, seen[0].lens, count);
             first += count;
         }
         self.report.candidates = self.scratch.candidates.len();
+    }
+
+    /// Lists the views that can be used by group. Returns whether candidates have to be rated in detail: for a policy
+    /// that asks for it, and wherever details of one candidate could not be worked out from one view alone.
+    fn order_views(&mut self, views: &[ViewInput<'_>]) -> bool {
+        let order = &mut self.scratch.order;
+        order.clear();
+        order.extend((0..views.len()).filter(|&i| views[i].view.check().is_ok()));
+        order.sort_unstable_by_key(|&i| (views[i].group, i));
+        self.report.broken_views = views.len() - order.len();
+        let several = order.windows(2).any(|pair| views[pair[0]].group == views[pair[1]].group);
+        let model = self.feedback.model();
+        self.selector.needs() == Needs::Details
+            || several
+            || self.options.benefit.enough_px > 0.0
+            || model.stages == Stages::Max
     }
 
     /// Culls the views of one group, given by their places in [`Scratch::order`].
@@ -300,32 +310,47 @@ impl Runtime {
 
     /// Fills in what was wanted of each candidate before, and advances its transition. Returns what the outgoing levels
     /// of transitions in flight cost, by the model.
-    fn remember(&mut self) -> f64 {
-        let Scratch { candidates, unsteady, .. } = &mut self.scratch;
-        unsteady.clear();
+    fn remember(&mut self, objects: &Objects) -> f64 {
+        self.scratch.unsteady.clear();
+        self.scratch.levels.clear();
         let mut fades_us = FixedSum::default();
-        for run in 0..candidates.ends.len() {
-            let group = candidates.ends[run].group;
+        let mut first_row = 0;
+        for run in 0..self.scratch.candidates.ends.len() {
+            let GroupEnd { group, end_row, .. } = self.scratch.candidates.ends[run];
+            let places =
+                places_of(objects, &self.rates, &self.options.benefit, &self.scratch.candidates, run);
+            let Scratch { candidates, levels, .. } = &mut self.scratch;
             let memory = memory::of_group(&mut self.groups, group);
-            let dt_ms = memory.begin_frame(self.layout.slots(), self.clock_ms);
-            for i in candidates.range(group) {
-                let Some(state) = memory.recall(candidates.slot[i]) else { continue };
-                let coarsest = self.rates.coarsest(candidates.table[i]);
-                let wanted = if state.wanted.is_drawn() { state.wanted.min(coarsest) } else { state.wanted };
-                candidates.previous[i] = Some(wanted);
-                candidates.age_ms[i] = GroupMemory::age_ms(self.clock_ms, state);
-                if state.shown != Shown::steady(wanted) {
-                    unsteady.push(i);
-                }
-                if state.shown.is_in_flight() {
-                    state.shown = state.shown.advanced(dt_ms as f32, &self.options.transition);
-                    let price = |level| cost_us(self.feedback.model(), &self.rates, candidates, i, level);
-                    fades_us.add(outgoing_us(&self.options.transition, state.shown, price));
-                    self.report.fades += usize::from(state.shown.is_in_flight());
-                }
+            let dt_ms = memory.begin_frame(objects.blocks().len(), self.clock_ms);
+            for at in first_row..end_row {
+                let mut row = candidates.rows[at];
+                memory.recall(&mut row, places, candidates, levels);
+                candidates.rows[at] = row;
+            }
+            self.advance(objects, group, dt_ms as f32, &mut fades_us);
+            first_row = end_row;
+        }
+        self.scratch.candidates.take_census();
+        fades_us.value()
+    }
+
+    /// Advances the transitions of a group, notes who is not shown as wanted, and adds up what outgoing levels cost.
+    fn advance(&mut self, objects: &Objects, group: GroupId, dt_ms: f32, fades_us: &mut FixedSum) {
+        let Scratch { candidates, unsteady, .. } = &mut self.scratch;
+        let frame = frame_of(objects, candidates, &self.rates, &self.feedback, &self.report);
+        let options = &self.options.transition;
+        let memory = memory::of_group(&mut self.groups, group);
+        let mut fades = 0;
+        for (slot, shown) in memory.unsteady() {
+            let Some(i) = candidates.find(group, slot) else { continue };
+            unsteady.push(i);
+            if shown.is_in_flight() {
+                *shown = shown.advanced(dt_ms, options);
+                fades_us.add(outgoing_us(options, *shown, |level| frame.cost_us(i, level)));
+                fades += usize::from(shown.is_in_flight());
             }
         }
-        fades_us.value()
+        self.report.fades += fades;
     }
 
     /// Lets the policy choose under this frame's budget.
@@ -336,17 +361,7 @@ impl Runtime {
         self.report.budget = budget;
         self.report.fades_us = fades_us;
         let mut levels = std::mem::take(&mut self.scratch.levels);
-        levels.clear();
-        levels.resize(self.scratch.candidates.len(), Level::NOT_DRAWN);
-        let frame = Frame {
-            id: self.report.frame,
-            objects,
-            candidates: &self.scratch.candidates,
-            rates: &self.rates,
-            model: self.feedback.model(),
-            budget,
-            timing: self.feedback.timing(),
-        };
+        let frame = frame_of(objects, &self.scratch.candidates, &self.rates, &self.feedback, &self.report);
         self.report.select = self.selector.select(&frame, &mut levels);
         self.scratch.levels = levels;
     }
@@ -355,80 +370,87 @@ impl Runtime {
     fn show(&mut self, objects: &Objects) {
         let reserve_us = self.options.transition.reserve_us(self.report.budget.target_us);
         let mut reserve_us = (reserve_us - self.report.fades_us).max(0.0);
+        self.scratch.all_news.clear();
         for run in 0..self.scratch.candidates.ends.len() {
             let group = self.scratch.candidates.ends[run].group;
-            self.note_wanted(objects, group);
+            self.find_news(run);
+            self.note_wanted(objects, run);
             self.grant_requests(objects, group, &mut reserve_us);
-            let memory = memory::of_group(&mut self.groups, group);
-            memory.end_frame(objects, &mut self.changes);
+            memory::of_group(&mut self.groups, group).end_frame(objects, &mut self.changes);
+            self.scratch.all_news.extend_from_slice(&self.scratch.news);
         }
         self.changes.sort_unstable_by_key(|c| (c.group, c.object));
     }
 
-    /// Remembers what is wanted of every candidate of a group; shows at once what has come into view and what is shown
-    /// at a level that is gone, and notes the candidates that are to change.
-    fn note_wanted(&mut self, objects: &Objects, group: GroupId) {
-        self.news(group);
-        let news = std::mem::take(&mut self.scratch.news);
-        self.scratch.requests.clear();
-        for &i in &news {
-            let (slot, wanted) = (self.scratch.candidates.slot[i], self.scratch.levels[i]);
-            match self.scratch.candidates.previous[i] {
-                Some(_) => {
-                    let shown = memory::of_group(&mut self.groups, group).state(slot).shown;
-                    self.ask(objects, i, shown);
-                }
-                None if wanted.is_drawn() => {
-                    self.push_change(objects, i, Level::NOT_DRAWN, Shown::steady(wanted));
-                }
-                None => {}
-            }
-        }
-        self.scratch.news = news;
-    }
-
-    /// Notes what is wanted of every candidate of a group, and which of them are news: in view for the first time, or
-    /// not shown as they are wanted.
-    fn news(&mut self, group: GroupId) {
+    /// Lists the candidates of a group that are news: in view for the first time, no longer wanted as before, or not
+    /// shown as they were wanted.
+    fn find_news(&mut self, run: usize) {
         let Scratch { candidates, levels, news, unsteady, .. } = &mut self.scratch;
-        let memory = memory::of_group(&mut self.groups, group);
+        let range = candidates.run(run);
         news.clear();
-        let range = candidates.range(group);
         news.extend(unsteady.iter().filter(|i| range.contains(i)));
-        for i in range {
-            let (previous, wanted) = (candidates.previous[i], levels[i]);
-            if previous == Some(wanted) {
-                continue;
+        let changed = |i: &usize| candidates.previous[*i] != Some(levels[*i]);
+        for start in range.clone().step_by(BLOCK) {
+            let chunk = start..(start + BLOCK).min(range.end);
+            // Most chunks hold nothing new, and comparing all of one takes a few instructions.
+            let pairs = candidates.previous[chunk.clone()].iter().zip(&levels[chunk.clone()]);
+            if pairs.fold(false, |any, (previous, &level)| any | (*previous != Some(level))) {
+                news.extend(chunk.filter(changed));
             }
-            match previous {
-                Some(_) => {
-                    memory.want(candidates.slot[i], wanted);
-                    self.report.switches += 1;
-                }
-                None => memory.enter(candidates.slot[i], wanted),
-            }
-            news.push(i);
         }
         news.sort_unstable();
         news.dedup();
     }
 
+    /// Remembers what is wanted of the news of a group; shows at once what has come into view and what is shown at a
+    /// level that is gone, and notes the candidates that are to change.
+    fn note_wanted(&mut self, objects: &Objects, run: usize) {
+        let group = self.scratch.candidates.ends[run].group;
+        let news = std::mem::take(&mut self.scratch.news);
+        self.scratch.requests.clear();
+        for &i in &news {
+            let Scratch { candidates, levels, .. } = &self.scratch;
+            let (slot, previous, wanted) = (candidates.slot[i], candidates.previous[i], levels[i]);
+            let places = places_of(objects, &self.rates, &self.options.benefit, candidates, run);
+            let place = places.of(slot as usize, wanted);
+            let memory = memory::of_group(&mut self.groups, group);
+            match previous {
+                Some(previous) => {
+                    let shown = memory.shown_at(slot);
+                    if previous != wanted {
+                        memory.want(slot, wanted, place);
+                        self.report.switches += 1;
+                    }
+                    self.ask(objects, group, i, shown);
+                }
+                None => {
+                    memory.enter(slot, wanted, place);
+                    if wanted.is_drawn() {
+                        self.push_change(objects, i, Level::NOT_DRAWN, Shown::steady(wanted));
+                    }
+                }
+            }
+        }
+        self.scratch.news = news;
+    }
+
     /// Asks for a transition of candidate `i` to what is wanted. Where a level that is `shown` is no longer in its table
     /// or in memory there can be none: it switches hard.
-    fn ask(&mut self, objects: &Objects, i: usize, shown: Shown) {
-        let Candidates { slot, table, .. } = &self.scratch.candidates;
-        let levels = self.rates.levels(table[i]).len();
-        let showable = objects.settings(slot[i] as usize).showable(levels);
+    fn ask(&mut self, objects: &Objects, group: GroupId, i: usize, shown: Shown) {
+        let (slot, wanted) = (self.scratch.candidates.slot[i], self.scratch.levels[i]);
+        let table = objects.blocks()[slot as usize / BLOCK].table[slot as usize % BLOCK];
+        let levels = self.rates.levels(table).len();
+        let showable = objects.settings(slot as usize).showable(levels);
         let gone = |l: Level| l.is_drawn() && !showable.contains(l);
-        let (slot, wanted) = (slot[i], self.scratch.levels[i]);
-        if !gone(shown.level) && !gone(shown.from) {
-            self.scratch.requests.extend((shown.level != wanted).then_some(i));
+        let hard = gone(shown.level) || gone(shown.from);
+        if !hard && shown.level != wanted {
+            self.scratch.requests.push((i, shown));
             return;
         }
-        let group = self.scratch.candidates.group_of(i);
-        memory::of_group(&mut self.groups, group).state(slot).shown = Shown::steady(wanted);
+        let after = if hard { Shown::steady(wanted) } else { shown };
+        memory::of_group(&mut self.groups, group).show(slot, after);
         if shown.level != wanted {
-            self.push_change(objects, i, shown.level, Shown::steady(wanted));
+            self.push_change(objects, i, shown.level, after);
         }
     }
 
@@ -438,17 +460,14 @@ impl Runtime {
         let options = self.options.transition;
         let mut requests = std::mem::take(&mut self.scratch.requests);
         if options.kind != TransitionKind::Hard {
-            requests.sort_unstable_by_key(|&i| objects.id_of(self.scratch.candidates.slot[i] as usize));
+            let slots = &self.scratch.candidates.slot;
+            requests.sort_unstable_by_key(|&(i, _)| objects.id_of(slots[i] as usize));
         }
-        for &i in &requests {
-            let slot = self.scratch.candidates.slot[i];
-            let to = self.scratch.levels[i];
-            let candidates = &self.scratch.candidates;
-            let price = |level| cost_us(self.feedback.model(), &self.rates, candidates, i, level);
-            let memory = memory::of_group(&mut self.groups, group);
-            let before = memory.state(slot).shown;
-            let after = follow(before, to, &options, price, reserve_us);
-            memory.state(slot).shown = after;
+        for &(i, before) in &requests {
+            let Scratch { candidates, levels, .. } = &self.scratch;
+            let frame = frame_of(objects, candidates, &self.rates, &self.feedback, &self.report);
+            let after = follow(before, levels[i], &options, |level| frame.cost_us(i, level), reserve_us);
+            memory::of_group(&mut self.groups, group).show(candidates.slot[i], after);
             if before.level != after.level {
                 self.push_change(objects, i, before.level, after);
             }
@@ -463,7 +482,7 @@ impl Runtime {
         self.changes.push(Change { group, object, old, new: shown.level, cause });
     }
 
-    /// Sums up what is shown and tells feedback what to expect of it.
+    /// Ends the frame of every group, sums up what is shown and tells feedback what to expect of it.
     fn account(&mut self, objects: &Objects, activity: Activity) {
         let (drivers, model_us) = self.tally(objects);
         let came_or_went = |c: &&Change| c.old.is_drawn() != c.new.is_drawn();
@@ -480,26 +499,59 @@ impl Runtime {
     }
 
     /// Counts and model time of everything shown, outgoing levels of transitions included.
+    ///
+    /// Who has a place and is no news is shown as was wanted, and has been counted.
     fn tally(&mut self, objects: &Objects) -> (Drivers, f64) {
-        let Scratch { candidates, tally, levels, .. } = &mut self.scratch;
-        let (model, kind) = (self.feedback.model(), self.options.transition.kind);
-        tally.clear(self.rates.len());
-        if kind == TransitionKind::Hard {
-            // What is wanted is shown.
-            for (i, &level) in levels.iter().enumerate() {
-                tally.add_level(model, &self.rates, candidates, i, level);
-            }
-            return tally.sum(model, objects.tables());
-        }
-        for (group, range) in candidates.groups() {
-            let memory = memory::of_group(&mut self.groups, group.group);
-            for i in range {
-                let shown = memory.shown_at(candidates.slot[i]);
-                tally.add(model, &self.rates, candidates, i, shown, kind);
+        let Scratch { candidates, tally, all_news, .. } = &mut self.scratch;
+        let frame = frame_of(objects, candidates, &self.rates, &self.feedback, &self.report);
+        tally.begin(&frame, self.options.transition.kind);
+        for run in 0..candidates.ends.len() {
+            let memory = memory::of_group(&mut self.groups, candidates.ends[run].group);
+            for i in candidates.run(run) {
+                if tally.is_uncounted(candidates, i) {
+                    tally.add(&frame, i, memory.shown_at(candidates.slot[i]));
+                }
             }
         }
-        tally.sum(model, objects.tables())
+        for &i in all_news.iter() {
+            if !tally.is_uncounted(candidates, i) {
+                let memory = memory::of_group(&mut self.groups, candidates.group_of(i));
+                tally.recount(&frame, i, memory.shown_at(candidates.slot[i]));
+            }
+        }
+        tally.sum(frame.model, objects.tables())
     }
+}
+
+/// The last frame as a selector sees it.
+fn frame_of<'a>(
+    objects: &'a Objects,
+    candidates: &'a Candidates,
+    rates: &'a TableRates,
+    feedback: &'a Feedback,
+    report: &FrameReport,
+) -> Frame<'a> {
+    Frame {
+        id: report.frame,
+        objects,
+        candidates,
+        rates,
+        model: feedback.model(),
+        budget: report.budget,
+        timing: feedback.timing(),
+    }
+}
+
+/// Where the levels of a group's objects stand among those of all tables.
+fn places_of<'a>(
+    objects: &'a Objects,
+    rates: &'a TableRates,
+    benefit: &BenefitModel,
+    candidates: &Candidates,
+    run: usize,
+) -> Places<'a> {
+    let once = candidates.ends[run].views == 1 && benefit.enough_px == 0.0;
+    Places { objects, rates, once }
 }
 
 /// What the outgoing level of a transition costs; 0 when none is in flight.

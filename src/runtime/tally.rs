@@ -1,75 +1,73 @@
 //! What is shown, counted per level, and what that is expected to take.
 
-use crate::frame::Candidates;
+use crate::frame::{Candidates, NO_PLACE, PixelSum};
 use crate::knapsack::FixedSum;
-use crate::rate::{CostModel, DRIVERS, Drivers, Stages, TableRates, cost_us, drivers_of};
-use crate::table::{Level, LodTable};
+use crate::rate::{CostModel, DRIVERS, Drivers, Stages, cost_us, drivers_of};
+use crate::select::Frame;
+use crate::table::LodTable;
 use crate::transition::{Shown, TransitionKind};
 
-/// Counts of one frame. Sums are of integers, so that the order of slots does not matter.
+/// Counts of one frame. Sums are of integers, or of numbers that add up exactly, so that the order of slots does not
+/// matter.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tally {
+    kind: TransitionKind,
+    stages: Stages,
     /// Per level of every table, how often it is drawn, cost multipliers included, in units of 2⁻²⁰.
     usage: Vec<i64>,
-    /// Projected area, in units of 2⁻¹² px².
-    area: i64,
+    /// Projected area.
+    area: PixelSum,
     /// Time by the model, where it is not linear in the counts.
     time_us: FixedSum,
 }
 
 const USAGE_UNIT: f64 = (1 << 20) as f64;
-const AREA_UNIT: f64 = (1 << 12) as f64;
 
 impl Tally {
-    /// Forgets all counts; `levels` is how many levels all tables have.
-    pub fn clear(&mut self, levels: usize) {
-        self.usage.clear();
-        self.usage.resize(levels, 0);
-        self.area = 0;
+    /// Starts with the census: every candidate with a place, at that place, and the area of all candidates, drawn once.
+    /// Where stages do not add up the census is of no use, and nothing has been counted.
+    pub fn begin(&mut self, frame: &Frame<'_>, kind: TransitionKind) {
+        (self.kind, self.stages) = (kind, frame.model.stages);
         self.time_us = FixedSum::default();
-    }
-
-    /// Counts what is shown of candidate `i`.
-    pub fn add(
-        &mut self,
-        model: &CostModel,
-        rates: &TableRates,
-        candidates: &Candidates,
-        i: usize,
-        shown: Shown,
-        kind: TransitionKind,
-    ) {
-        if !shown.is_in_flight() {
-            return self.add_level(model, rates, candidates, i, shown.level);
-        }
-        match kind {
-            TransitionKind::Geomorph => {
-                self.add_level(model, rates, candidates, i, shown.level.min(shown.from));
+        self.area = frame.candidates.pixels;
+        self.usage.clear();
+        match self.stages {
+            Stages::Sum => {
+                self.usage.extend(frame.candidates.census.iter().map(|&count| i64::from(count) << 20))
             }
-            _ => {
-                self.add_level(model, rates, candidates, i, shown.level);
-                self.add_level(model, rates, candidates, i, shown.from);
-            }
+            Stages::Max => self.usage.resize(frame.rates.len(), 0),
         }
     }
 
-    /// Counts one level of candidate `i`.
-    pub fn add_level(
-        &mut self,
-        model: &CostModel,
-        rates: &TableRates,
-        c: &Candidates,
-        i: usize,
-        level: Level,
-    ) {
-        if level.is_drawn() {
-            let count = &mut self.usage[rates.index(c.table[i], level)];
-            *count = count.saturating_add((f64::from(c.cost_scale[i]) * USAGE_UNIT) as i64);
-            self.area = self.area.saturating_add((f64::from(c.area_px2[i]) * AREA_UNIT) as i64);
-            if model.stages == Stages::Max {
-                self.time_us.add(cost_us(model, rates, c, i, level));
+    /// Whether candidate `i` has yet to be counted.
+    pub fn is_uncounted(&self, candidates: &Candidates, i: usize) -> bool {
+        self.stages == Stages::Max || candidates.place[i] == NO_PLACE
+    }
+
+    /// Counts what is shown of candidate `i` instead of what was counted at its place.
+    pub fn recount(&mut self, frame: &Frame<'_>, i: usize, shown: Shown) {
+        self.usage[frame.candidates.place[i] as usize] -= 1 << 20;
+        self.add(frame, i, shown);
+    }
+
+    /// Counts what is shown of candidate `i`. Its area has been counted once.
+    pub fn add(&mut self, frame: &Frame<'_>, i: usize, shown: Shown) {
+        let (first, second) = match (shown.is_in_flight(), self.kind) {
+            (false, _) => (shown.level, None),
+            (true, TransitionKind::Geomorph) => (shown.level.min(shown.from), None),
+            (true, _) => (shown.level, Some(shown.from)),
+        };
+        let candidate = frame.candidate(i);
+        let mut drawn = 0.0;
+        for level in [Some(first), second].into_iter().flatten().filter(|level| level.is_drawn()) {
+            let count = &mut self.usage[frame.rates.index(candidate.table, level)];
+            *count = count.saturating_add((f64::from(candidate.cost_scale) * USAGE_UNIT) as i64);
+            drawn += 1.0;
+            if self.stages == Stages::Max {
+                self.time_us.add(cost_us(frame.model, frame.rates, &candidate, level));
             }
         }
+        self.area.add((drawn - 1.0) * PixelSum::rounded(candidate.area_px2));
     }
 
     /// Counts of draw calls, vertices, triangles and pixels, and the time that the model expects of them.
@@ -79,7 +77,7 @@ impl Tally {
             let times = count as f64 / USAGE_UNIT;
             drivers.iter_mut().zip(drivers_of(level)).for_each(|(sum, d)| *sum += d * times);
         }
-        drivers[DRIVERS - 1] = self.area as f64 / AREA_UNIT;
+        drivers[DRIVERS - 1] = self.area.px2();
         let linear_us = drivers.iter().zip(model.coefficients()).map(|(d, c)| d * c).sum();
         (drivers, if model.stages == Stages::Max { self.time_us.value() } else { linear_us })
     }

@@ -15,9 +15,9 @@ pub use predictive::{Predictive, PredictiveOptions};
 pub use reactive::{Reactive, ReactiveOptions};
 pub use screen_size::{Measure, ScreenSize, ScreenSizeOptions};
 
-use crate::frame::{Budget, Candidates, Cause, FrameId, SelectReport, Timing};
+use crate::frame::{Budget, Candidate, Candidates, Cause, FrameId, SelectReport, Timing};
 use crate::knapsack::FixedSum;
-use crate::rate::{CostModel, TableRates, cost_us};
+use crate::rate::{self, CostModel, TableRates, cost_us};
 use crate::scene::Objects;
 use crate::table::Level;
 
@@ -41,20 +41,46 @@ pub struct Frame<'a> {
 }
 
 impl Frame<'_> {
+    /// Candidate `i`. Where candidates are not [detailed](Candidates::is_detailed) its details are worked out, which takes
+    /// some 50 ns.
+    pub fn candidate(&self, i: usize) -> Candidate {
+        let c = self.candidates;
+        if c.is_detailed() {
+            return c.get(i);
+        }
+        let run = c.ends.partition_point(|g| g.end <= i);
+        rate::details(self.objects, self.rates, &c.ends[run].lens, c.slot[i], c.weight[i])
+    }
+
+    /// A copy of the candidates with all details.
+    pub fn detailed(&self) -> Candidates {
+        let mut detailed = self.candidates.clone();
+        detailed.clear_details();
+        (0..self.candidates.len()).for_each(|i| detailed.push_details(self.candidate(i)));
+        detailed
+    }
+
     /// Predicted time of candidate `i` at `level`; 0 when not drawn.
     pub fn cost_us(&self, i: usize, level: Level) -> f64 {
-        cost_us(self.model, self.rates, self.candidates, i, level)
+        cost_us(self.model, self.rates, &self.candidate(i), level)
     }
 
     /// Benefit of candidate `i` at `level` in px²; 0 when not drawn.
     pub fn benefit(&self, i: usize, level: Level) -> f64 {
-        let c = self.candidates;
-        f64::from(c.weight[i]) * f64::from(self.rates.accuracy(c.table[i], level))
+        self.benefit_of(&self.candidate(i), level)
     }
 
     /// The cheapest choice of candidate `i`.
     pub fn minimum(&self, i: usize) -> Level {
-        self.rates.minimum(self.candidates.table[i], self.candidates.allowed[i])
+        self.minimum_of(&self.candidate(i))
+    }
+
+    fn benefit_of(&self, candidate: &Candidate, level: Level) -> f64 {
+        f64::from(candidate.weight) * f64::from(self.rates.accuracy(candidate.table, level))
+    }
+
+    fn minimum_of(&self, candidate: &Candidate) -> Level {
+        self.rates.minimum(candidate.table, candidate.allowed)
     }
 
     /// What breaks ties between candidates: the object's id, then the group. The lower goes first.
@@ -67,9 +93,11 @@ impl Frame<'_> {
     pub fn report(&self, levels: &[Level]) -> SelectReport {
         let [mut cost, mut benefit, mut least] = [FixedSum::default(); 3];
         for (i, &level) in levels.iter().enumerate() {
-            cost.add(self.cost_us(i, level));
-            benefit.add(self.benefit(i, level));
-            least.add(self.cost_us(i, self.minimum(i)));
+            let candidate = self.candidate(i);
+            let cost_us = |level| cost_us(self.model, self.rates, &candidate, level);
+            cost.add(cost_us(level));
+            benefit.add(self.benefit_of(&candidate, level));
+            least.add(cost_us(self.minimum_of(&candidate)));
         }
         SelectReport {
             cost_us: cost.value(),
@@ -80,12 +108,28 @@ impl Frame<'_> {
     }
 }
 
+/// What a selector has to be told about candidates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Needs {
+    /// Weights; details now and then, through [`Frame::candidate`].
+    Weights,
+    /// All columns.
+    #[default]
+    Details,
+}
+
 /// A policy: fills in one level per candidate.
 ///
 /// Levels must lie in the candidate's allowed range, or be [`Level::NOT_DRAWN`] where that range ends in it. The same
 /// frames must yield the same levels, whatever the order of slots.
 pub trait Selector: Send {
-    /// Chooses. `levels` has one entry per candidate, its contents arbitrary.
+    /// What the selector reads of candidates. Candidates may come with more.
+    fn needs(&self) -> Needs {
+        Needs::Details
+    }
+
+    /// Chooses. `levels` has one entry per candidate: what was wanted in the last frame, and anything for a candidate
+    /// that has just come into view.
     fn select(&mut self, frame: &Frame<'_>, levels: &mut [Level]) -> SelectReport;
 
     /// Why candidate `i` is at `level`, which it could be finer than: the budget (or the size) unless the policy knows

@@ -169,7 +169,7 @@ impl Selector for Reactive {
         let mut saturated = Saturation { all_finest: true, all_coarsest: true };
         for (group, range) in frame.candidates.groups() {
             for i in range {
-                levels[i] = self.options.size.level(frame, i, self.factor, group.height_px);
+                levels[i] = self.options.size.level(frame, i, self.factor, group.lens.height_px);
                 saturated.all_finest &= levels[i] == frame.candidates.allowed[i].finest;
                 let coarsest = frame.rates.coarsest(frame.candidates.table[i]);
                 saturated.all_coarsest &= levels[i] >= frame.candidates.allowed[i].coarsest.min(coarsest);

@@ -86,7 +86,8 @@ impl ScreenSizeOptions {
         let candidates = frame.candidates;
         let plain = Self { band: 0.0, dwell_ms: 0, ..*self };
         let group = candidates.group_of(i);
-        let height_px = candidates.groups().find(|(g, _)| g.group == group).map_or(1.0, |(g, _)| g.height_px);
+        let height_px =
+            candidates.groups().find(|(g, _)| g.group == group).map_or(1.0, |(g, _)| g.lens.height_px);
         let held = candidates.previous[i] == Some(level) && plain.level(frame, i, scale, height_px) < level;
         match held {
             true if candidates.age_ms[i] < self.dwell_ms => Cause::Dwell,
@@ -131,7 +132,7 @@ impl Selector for ScreenSize {
     fn select(&mut self, frame: &Frame<'_>, levels: &mut [Level]) -> SelectReport {
         for (group, range) in frame.candidates.groups() {
             for i in range {
-                levels[i] = self.options.level(frame, i, self.options.scale, group.height_px);
+                levels[i] = self.options.level(frame, i, self.options.scale, group.lens.height_px);
             }
         }
         frame.report(levels)

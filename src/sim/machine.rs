@@ -90,7 +90,7 @@ impl Machine {
     pub fn time_us(&self, candidates: &Candidates, levels: impl IntoIterator<Item = Level>) -> f64 {
         let mut sum = FixedSum::default();
         for (i, level) in levels.into_iter().enumerate() {
-            sum.add(cost_us(&self.model, &self.rates, candidates, i, level));
+            sum.add(cost_us(&self.model, &self.rates, &candidates.get(i), level));
         }
         sum.value()
     }

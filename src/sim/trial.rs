@@ -233,7 +233,7 @@ impl<'a> Judge<'a> {
         noise: f64,
         time_s: f64,
     ) -> FrameRow {
-        self.seen.clone_from(runtime.candidates());
+        self.seen = runtime.last_frame(objects).detailed();
         self.machine.see(&mut self.seen);
         let shown = runtime.shown_slots(GroupId(0)).map(|(_, Shown { level, .. })| level);
         self.shown.clear();
