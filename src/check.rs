@@ -123,12 +123,12 @@ fn choices(frame: &Frame<'_>, i: usize) -> impl Iterator<Item = Level> + use<> {
 }
 
 /// How much the cost of candidate `i` may be off: costs are counted in ticks of 2⁻²⁴ µs, or coarser ones of which the
-/// dearest level of any table takes 2³⁵, and are rounded up per draw, per object and for the pixels.
+/// dearest level of any table takes 2³⁵, and are rounded up per draw and per object; areas are rounded to 2⁻⁶ px².
 pub fn rounding_us(frame: &Frame<'_>, i: usize) -> f64 {
     let tables = (0..frame.rates.tables()).flat_map(|t| frame.rates.levels(t as u16));
     let dearest_us = tables.fold(0.0, |most: f64, level| most.max(level.geometry_us));
     let tick_us = (dearest_us / (1u64 << 35) as f64).max(1.0 / (1u64 << 24) as f64);
-    tick_us * (f64::from(frame.candidates.cost_scale[i]) + 2.0)
+    tick_us * (f64::from(frame.candidates.cost_scale[i]) + 2.0) + frame.model.pixel_us / 64.0
 }
 
 /// Terms of sums, and accuracies in them, are rounded to this.

@@ -118,6 +118,9 @@ impl PixelSum {
     /// Adding and subtracting this rounds to 2⁻⁶.
     const ROUND: f64 = 3.0 * (1u64 << 45) as f64;
 
+    /// How much rounding may take off an area.
+    pub const HIDDEN_PX2: f64 = 1.0 / 128.0;
+
     /// An area as it counts.
     pub fn rounded(area_px2: f32) -> f64 {
         (f64::from(area_px2) + Self::ROUND) - Self::ROUND
@@ -228,6 +231,24 @@ impl Candidates {
             size_px: self.size_px[i],
             near_px: self.near_px[i],
             area_px2: self.area_px2[i],
+        }
+    }
+
+    /// Rewrites details. No candidate keeps its place: what it costs may no longer be what its table says.
+    pub fn revise(&mut self, mut change: impl FnMut(&mut Candidate)) {
+        self.pixels = PixelSum::default();
+        self.place.fill(NO_PLACE);
+        self.census.fill(0);
+        for i in 0..self.len() {
+            let mut candidate = self.get(i);
+            change(&mut candidate);
+            self.weight[i] = candidate.weight;
+            self.allowed[i] = candidate.allowed;
+            self.cost_scale[i] = candidate.cost_scale;
+            self.size_px[i] = candidate.size_px;
+            self.near_px[i] = candidate.near_px;
+            self.area_px2[i] = candidate.area_px2;
+            self.pixels.add(PixelSum::rounded(candidate.area_px2));
         }
     }
 

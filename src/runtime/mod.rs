@@ -317,8 +317,8 @@ impl Runtime {
         let mut first_row = 0;
         for run in 0..self.scratch.candidates.ends.len() {
             let GroupEnd { group, end_row, .. } = self.scratch.candidates.ends[run];
-            let places =
-                places_of(objects, &self.rates, &self.options.benefit, &self.scratch.candidates, run);
+            let once = self.counts_once(run);
+            let places = Places { objects, rates: &self.rates, once };
             let Scratch { candidates, levels, .. } = &mut self.scratch;
             let memory = memory::of_group(&mut self.groups, group);
             let dt_ms = memory.begin_frame(objects.blocks().len(), self.clock_ms);
@@ -332,6 +332,13 @@ impl Runtime {
         }
         self.scratch.candidates.take_census();
         fades_us.value()
+    }
+
+    /// Whether everything that a group sees costs what its table says, once.
+    fn counts_once(&self, run: usize) -> bool {
+        self.scratch.candidates.ends[run].views == 1
+            && self.options.benefit.enough_px == 0.0
+            && self.feedback.model().stages == Stages::Sum
     }
 
     /// Advances the transitions of a group, notes who is not shown as wanted, and adds up what outgoing levels cost.
@@ -406,13 +413,13 @@ impl Runtime {
     /// level that is gone, and notes the candidates that are to change.
     fn note_wanted(&mut self, objects: &Objects, run: usize) {
         let group = self.scratch.candidates.ends[run].group;
+        let once = self.counts_once(run);
         let news = std::mem::take(&mut self.scratch.news);
         self.scratch.requests.clear();
         for &i in &news {
             let Scratch { candidates, levels, .. } = &self.scratch;
             let (slot, previous, wanted) = (candidates.slot[i], candidates.previous[i], levels[i]);
-            let places = places_of(objects, &self.rates, &self.options.benefit, candidates, run);
-            let place = places.of(slot as usize, wanted);
+            let place = Places { objects, rates: &self.rates, once }.of(slot as usize, wanted);
             let memory = memory::of_group(&mut self.groups, group);
             match previous {
                 Some(previous) => {
@@ -540,18 +547,6 @@ fn frame_of<'a>(
         budget: report.budget,
         timing: feedback.timing(),
     }
-}
-
-/// Where the levels of a group's objects stand among those of all tables.
-fn places_of<'a>(
-    objects: &'a Objects,
-    rates: &'a TableRates,
-    benefit: &BenefitModel,
-    candidates: &Candidates,
-    run: usize,
-) -> Places<'a> {
-    let once = candidates.ends[run].views == 1 && benefit.enough_px == 0.0;
-    Places { objects, rates, once }
 }
 
 /// What the outgoing level of a transition costs; 0 when none is in flight.

@@ -1,10 +1,11 @@
 //! The predictive policy: the multiple-choice knapsack under the budget of this frame.
 
-use super::{Frame, Selector};
-use crate::frame::OptionsError;
-use crate::frame::{Cause, Certificate, SelectReport};
-use crate::knapsack::{Outcome, ProfileItem, SharedClass, SharedKnapsack};
-use crate::rate::{Stages, TableRates};
+use super::{Frame, Needs, Selector};
+use crate::frame::{
+    Candidate, Candidates, Cause, Certificate, NO_PLACE, OptionsError, PixelSum, SelectReport,
+};
+use crate::knapsack::{Crowd, Outcome, ProfileItem, Profiles, SharedClass, SharedKnapsack};
+use crate::rate::{Stages, TableRates, cost_us};
 use crate::scene::LevelRange;
 use crate::table::Level;
 
@@ -51,9 +52,6 @@ impl PredictiveOptions {
     }
 }
 
-/// Marks a class whose hull is yet to be made.
-const OWN: u32 = u32::MAX;
-
 /// Maximises benefit under the budget, with a certificate: after Funkhouser and Séquin 1993 in what it maximises, not
 /// in how. Switching prices are part of the objective, so that hysteresis never breaks the budget.
 #[derive(Clone, Debug, Default)]
@@ -61,8 +59,26 @@ pub struct Predictive {
     options: PredictiveOptions,
     knapsack: SharedKnapsack,
     hulls: Hulls,
+    /// Candidates whose class is not simply that of a level of their table.
+    odd: Vec<Odd>,
     /// λ of the last frame in px² per µs.
     lambda: f64,
+}
+
+/// Marks a class whose hull is yet to be made.
+const OWN: u32 = u32::MAX;
+
+/// Whether what a level costs depends on the candidate in more than a factor: where the cost of pixels depends on the
+/// level, the table's hull does not hold.
+fn has_own_hull(frame: &Frame<'_>, candidate: &Candidate) -> bool {
+    frame.model.stages == Stages::Max || !candidate.allowed.coarsest.is_drawn()
+}
+
+/// The class of a candidate that is looked at closely before the others are.
+#[derive(Clone, Copy, Debug)]
+struct Odd {
+    candidate: u32,
+    class: SharedClass,
 }
 
 impl Predictive {
@@ -75,49 +91,58 @@ impl Predictive {
         Ok(Self { options, ..Self::default() })
     }
 
-    /// One class per candidate; returns the ticks that are spent whatever is chosen.
-    fn fill_classes(&mut self, frame: &Frame<'_>) -> u64 {
+    /// Makes the classes of the candidates without a place: those that have just come into view, and those whose levels
+    /// are narrowed, may be skipped, or cost more than their table says. Returns the ticks that are spent whatever is
+    /// chosen.
+    fn fill_odd(&mut self, frame: &Frame<'_>) -> u64 {
         let candidates = frame.candidates;
-        let pixel_ticks = frame.model.pixel_us * self.hulls.ticks_per_us;
-        // Where the cost of pixels depends on the level, the table's hull does not hold.
-        let all_own = frame.model.stages == Stages::Max;
-        let mut fixed = 0u64;
-        self.knapsack.classes.clear();
-        self.knapsack.classes.reserve(candidates.len());
-        for i in 0..candidates.len() {
-            let (table, allowed) = (candidates.table[i], candidates.allowed[i]);
-            let own = all_own || !allowed.coarsest.is_drawn();
-            let profile = if own {
-                OWN
-            } else {
-                let pixels = (pixel_ticks * f64::from(candidates.area_px2[i])) as i64;
-                fixed = fixed.saturating_add(pixels as u64 + 1);
-                self.hulls.shared(table, allowed, frame.rates, &mut self.knapsack)
-            };
-            let previous = candidates.previous[i];
-            let held = previous.filter(|_| !own);
-            self.knapsack.classes.push(SharedClass {
-                profile,
-                weight: candidates.weight[i],
-                scale: if own { 1.0 } else { candidates.cost_scale[i] },
-                stay: self.options.price(previous, candidates.age_ms[i]),
-                current: held.map_or(0, |level| self.knapsack.profiles.position_of(profile, level.0)),
-            });
+        let mut pixels = candidates.pixels;
+        self.odd.clear();
+        for i in (0..candidates.len()).filter(|&i| candidates.place[i] == NO_PLACE) {
+            let candidate = frame.candidate(i);
+            let own = has_own_hull(frame, &candidate);
+            if own {
+                pixels.add(-PixelSum::rounded(candidate.area_px2));
+            }
+            let profile =
+                if own { OWN } else { self.hulls.shared(&candidate, frame.rates, &mut self.knapsack) };
+            let scale = if own { 1.0 } else { candidate.cost_scale };
+            let stay = self.options.price(candidates.previous[i], candidates.age_ms[i]);
+            let class = SharedClass { profile, weight: candidate.weight, scale, stay, current: 0 };
+            self.odd.push(Odd { candidate: i as u32, class });
         }
         self.make_own_hulls(frame);
-        fixed
+        let hidden_px2 = candidates.len() as f64 * PixelSum::HIDDEN_PX2;
+        ceil_ticks(frame.model.pixel_us * self.hulls.ticks_per_us * (pixels.px2() + hidden_px2))
     }
 
-    /// Makes the hulls that are not shared, after all that are, and finds what is held on them.
+    /// Makes the hulls that are not shared, after all that are, and finds what is held.
     fn make_own_hulls(&mut self, frame: &Frame<'_>) {
-        for i in 0..frame.candidates.len() {
-            if self.knapsack.classes[i].profile == OWN {
-                let profile = self.hulls.own(frame, i, &mut self.knapsack);
-                let held = |level: Level| self.knapsack.profiles.position_of(profile, level.0);
-                let current = frame.candidates.previous[i].map_or(0, held);
-                self.knapsack.classes[i] = SharedClass { profile, current, ..self.knapsack.classes[i] };
+        for Odd { candidate, class } in &mut self.odd {
+            let i = *candidate as usize;
+            if class.profile == OWN {
+                class.profile = self.hulls.own(frame, &frame.candidate(i), &mut self.knapsack);
             }
+            let held = |level: Level| self.knapsack.profiles.position_of(class.profile, level.0);
+            class.current = frame.candidates.previous[i].map_or(0, held);
         }
+    }
+
+    fn solve(&mut self, frame: &Frame<'_>, budget: u64, ease: u64) -> Outcome {
+        let Self { options, knapsack, odd, .. } = self;
+        let candidates = frame.candidates;
+        let class = |profiles: &Profiles, i: usize| match candidates.place[i] {
+            NO_PLACE => odd[odd.partition_point(|odd| (odd.candidate as usize) < i)].class,
+            place => {
+                let stay = options.price(candidates.previous[i], candidates.age_ms[i]);
+                profiles.class_at(place, candidates.weight[i], stay)
+            }
+        };
+        let Candidates { weight, place, census, .. } = candidates;
+        let crowd = Crowd { weight, place, census, class };
+        let key = |i| frame.key(i);
+        let near = knapsack.solve_crowd(&crowd, budget, ease, key);
+        near.unwrap_or_else(|| knapsack.solve_all(&crowd, budget, ease, key))
     }
 
     fn report(&self, outcome: &Outcome, fixed: u64, over: u64) -> SelectReport {
@@ -140,26 +165,30 @@ impl Predictive {
 }
 
 impl Selector for Predictive {
+    fn needs(&self) -> Needs {
+        Needs::Weights
+    }
+
     fn select(&mut self, frame: &Frame<'_>, levels: &mut [Level]) -> SelectReport {
         self.hulls.renew(frame, &mut self.knapsack);
-        let fixed = self.fill_classes(frame);
+        let fixed = self.fill_odd(frame);
         let budget = (frame.budget.select_us.max(0.0) * self.hulls.ticks_per_us) as u64;
         let over = fixed.saturating_sub(budget);
         let ease = (budget as f64 * (1.0 - self.options.ease)) as u64;
         let free = |ticks: u64| ticks.saturating_sub(fixed);
-        let outcome = self.knapsack.solve(free(budget), free(ease), |i| frame.key(i));
-        self.knapsack.profiles.truncate(self.hulls.shared_count as usize);
-        for (level, &chosen) in levels.iter_mut().zip(&self.knapsack.chosen) {
-            *level = Level(chosen);
+        let outcome = self.solve(frame, free(budget), free(ease));
+        for (i, item) in self.knapsack.changed() {
+            levels[i] = Level(item);
         }
+        self.knapsack.profiles.truncate(self.hulls.shared_count as usize);
         self.lambda = outcome.lambda * self.hulls.ticks_per_us;
         self.report(&outcome, fixed, over)
     }
 
     /// Held back by the price of switching where the next finer level is worth the going rate without it.
     fn cause(&self, frame: &Frame<'_>, i: usize, level: Level) -> Cause {
-        let candidates = frame.candidates;
-        let finer = frame.rates.drawn(candidates.table[i], candidates.allowed[i]).filter(|&(l, _)| l < level);
+        let (candidates, candidate) = (frame.candidates, frame.candidate(i));
+        let finer = frame.rates.drawn(candidate.table, candidate.allowed).filter(|&(l, _)| l < level);
         let lambda = self.lambda;
         let pays = |to: Level| {
             let gain = frame.benefit(i, to) - frame.benefit(i, level);
@@ -216,13 +245,8 @@ impl Hulls {
     }
 
     /// The profile of a table cut to a range of drawn levels. Those of whole tables have the tables' numbers.
-    fn shared(
-        &mut self,
-        table: u16,
-        allowed: LevelRange,
-        rates: &TableRates,
-        knapsack: &mut SharedKnapsack,
-    ) -> u32 {
+    fn shared(&mut self, candidate: &Candidate, rates: &TableRates, knapsack: &mut SharedKnapsack) -> u32 {
+        let Candidate { table, allowed, .. } = *candidate;
         if allowed == rates.whole(table) {
             return u32::from(table);
         }
@@ -254,14 +278,14 @@ impl Hulls {
     }
 
     /// A profile for this candidate and frame alone, its whole cost in the ticks.
-    fn own(&mut self, frame: &Frame<'_>, i: usize, knapsack: &mut SharedKnapsack) -> u32 {
-        let (table, allowed) = (frame.candidates.table[i], frame.candidates.allowed[i]);
+    fn own(&mut self, frame: &Frame<'_>, candidate: &Candidate, knapsack: &mut SharedKnapsack) -> u32 {
         let tick = self.ticks_per_us;
         let item = |level: Level, value: f32| ProfileItem {
             value,
-            ticks: ceil_ticks(frame.cost_us(i, level) * tick),
+            ticks: ceil_ticks(cost_us(frame.model, frame.rates, candidate, level) * tick),
             item: level.0,
         };
+        let Candidate { table, allowed, .. } = *candidate;
         self.items.clear();
         self.items.extend(frame.rates.drawn(table, allowed).map(|(level, rate)| item(level, rate.accuracy)));
         if !allowed.coarsest.is_drawn() {

@@ -79,11 +79,11 @@ impl Machine {
 
     /// Rewrites candidates as this machine sees them: each asset's factor on its cost.
     pub fn see(&self, candidates: &mut Candidates) {
-        for i in 0..candidates.len() {
-            let factor = self.assets[usize::from(candidates.table[i])];
-            candidates.cost_scale[i] *= factor;
-            candidates.area_px2[i] *= factor;
-        }
+        candidates.revise(|candidate| {
+            let factor = self.assets[usize::from(candidate.table)];
+            candidate.cost_scale *= factor;
+            candidate.area_px2 *= factor;
+        });
     }
 
     /// Time of a frame without noise. `candidates` are as the machine sees them.

@@ -3,8 +3,9 @@
 //!
 //! Sums are of integers, so the order of classes does not matter, and bounds are rounded outwards.
 
-use super::census::{Settled, fixed};
+use super::SharedClass;
 use super::class::{Class, reach};
+use super::crowd::Settled;
 use super::profiles::FRACTION_BITS;
 
 /// How good a choice is. Costs are in ticks.
@@ -98,12 +99,13 @@ impl Worth {
 const NEAR: f32 = 4e-7;
 
 impl Sums {
-    /// No class yet, of so many, with weights in `unit`s.
-    pub fn new(lambda: f32, classes: usize, unit: f64) -> Self {
+    /// None of these classes yet.
+    pub fn new(lambda: f32, classes: &[SharedClass]) -> Self {
+        let heaviest = classes.iter().map(|c| c.weight).fold(0.0, f32::max);
         Self {
             lambda,
-            classes,
-            unit,
+            classes: classes.len(),
+            unit: power_of_two(WEIGHT_BITS - exponent_of(heaviest)),
             weight: 0,
             cost: 0,
             benefit: Worth::default(),
@@ -137,44 +139,32 @@ impl Sums {
         self.priced_bound.add(class, weight, best);
     }
 
-    /// Adds settled classes: they are at the best position for every λ of the bracket, priced or not.
-    pub fn add_settled(&mut self, settled: &Settled<'_>) {
-        let Settled { positions, position, count } = *settled;
-        let worth = |p: usize| u128::from(positions[p].worth);
-        let (here, cost) = (Worth(count.weight * worth(position)), settled.cost(position));
-        self.weight += count.weight;
-        self.cost = self.cost.saturating_add(cost);
-        self.benefit.0 += here.0;
-        self.minimum.0 += count.weight * worth(0);
-        for bound in [&mut self.bound, &mut self.priced_bound] {
-            bound.worth.0 += here.0;
-            bound.cost = bound.cost.saturating_add(cost);
-        }
-        let kept = (count.kept * (worth(position) - worth(0))) >> FRACTION_BITS;
-        self.premium += kept as i128;
-        self.bound_premium += kept as i128;
-    }
-
+    /// What the sums and those of the settled classes come to, which are at the best position for λ, priced or not. The
+    /// price of their switching is left out on both sides.
+    ///
     /// Bounds are widened by what rounding can hide: two units per class for weights and premiums, two ticks per class
     /// for scaled costs, the last binary digit of every value, doubled where switching is priced, and the last places of
     /// the products.
-    pub fn outcome(&self, budget: u64) -> Outcome {
+    pub fn outcome(&self, budget: u64, settled: &Settled) -> Outcome {
         let lambda = f64::from(self.lambda);
         let digits = 2.0 * self.weight as f64 / ((1u64 << FRACTION_BITS) as f64 * self.unit);
-        let hidden = self.classes as f64 * 2.0 * (lambda + 1.0 / self.unit) + digits;
+        let [value, least] = settled.benefit();
+        let settled_hidden = 2.0 * (settled.hidden() + settled.classes as f64 * lambda);
+        let hidden = self.classes as f64 * 2.0 * (lambda + 1.0 / self.unit) + digits + settled_hidden;
         let bound = |benefit: f64, cost: u64| {
+            let (benefit, cost) = (benefit + value, cost.saturating_add(settled.held));
             let unspent = lambda * (budget as f64 - cost as f64);
             let widest = benefit.abs() + lambda * (budget as f64 + cost as f64);
             benefit + unspent + hidden + widest * 1e-14
         };
-        let benefit = self.benefit.value(self.unit);
+        let benefit = self.benefit.value(self.unit) + value;
         let priced_benefit = benefit + self.premium as f64 / self.unit;
         let priced_best = self.priced_bound.worth.value(self.unit) + self.bound_premium as f64 / self.unit;
         Outcome {
-            cost: self.cost,
+            cost: self.cost.saturating_add(settled.held),
             shortfall: 0,
             benefit,
-            minimum_benefit: self.minimum.value(self.unit),
+            minimum_benefit: self.minimum.value(self.unit) + least,
             upper_bound: bound(self.bound.worth.value(self.unit), self.bound.cost).max(benefit),
             priced_benefit,
             priced_bound: bound(priced_best, self.priced_bound.cost).max(priced_benefit),
@@ -182,6 +172,24 @@ impl Sums {
             steps: 0,
         }
     }
+}
+
+/// The heaviest class has so many bits of units.
+const WEIGHT_BITS: i32 = 56;
+
+/// The whole units of `x`, which is not negative and below 2⁶³.
+fn fixed(x: f64) -> u64 {
+    x as i64 as u64
+}
+
+/// The exponent of a power of two above `x`; 0 for 0.
+fn exponent_of(x: f32) -> i32 {
+    if x > 0.0 { (x.to_bits() >> 23) as i32 - 126 } else { 0 }
+}
+
+/// 2^`exponent`, for exponents of normal numbers.
+fn power_of_two(exponent: i32) -> f64 {
+    f64::from_bits(((1023 + exponent) as u64) << 52)
 }
 
 /// The position that maximises benefit − λ·cost, looked for from `near`.

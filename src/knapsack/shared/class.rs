@@ -7,7 +7,6 @@ use super::profiles::{Position, Profiles};
 pub(super) struct Class<'a> {
     /// Its hull, cheapest first.
     pub positions: &'a [Position],
-    place: u32,
     pub weight: f32,
     pub scale: f32,
     /// Weight per scale: what turns the profile's slopes into the class's.
@@ -21,18 +20,12 @@ impl<'a> Class<'a> {
         let SharedClass { profile, weight, scale, current, stay } = *class;
         Self {
             positions: profiles.positions(profile),
-            place: profiles.place(profile),
             weight,
             scale,
             rate: if scale == 1.0 { weight } else { weight / scale },
             current,
             stay,
         }
-    }
-
-    /// Where a position stands among those of all profiles.
-    pub fn place(&self, position: u8) -> usize {
-        self.place as usize + usize::from(position)
     }
 
     pub fn last(&self) -> u8 {
@@ -59,7 +52,8 @@ impl<'a> Class<'a> {
         self.plain_slope(position) * price
     }
 
-    /// The position where steps of priced slope λ or more end, λ > 0. Looked for from `near`, which from frame to frame is nearly always the answer.
+    /// The position where steps of priced slope λ or more end, λ > 0. Looked for from `near`, which from frame to frame is
+    /// nearly always the answer.
     pub fn reach(&self, near: u8, lambda: f32) -> u8 {
         reach(near, lambda, |p| self.slope(p))
     }

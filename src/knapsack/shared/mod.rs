@@ -9,18 +9,22 @@
 //! The objective can price switching: the steps of a class up to its current position count (1 + stay) times, the steps
 //! beyond it (1 − stay) times. That keeps slopes falling along each hull, so the greedy and its bound hold for the
 //! priced objective; the certificate of the plain one is computed beside it.
+//!
+//! Where there are many classes and most of them hold what they are going to hold, [`SharedKnapsack::solve_crowd`] looks
+//! at the others alone. Its answer is that of [`SharedKnapsack::solve`].
 
-mod census;
 mod certificate;
 mod class;
+mod crowd;
 mod profiles;
 
 pub use certificate::Outcome;
+pub use crowd::Crowd;
 pub use profiles::{Position, ProfileItem, Profiles};
 
-use census::{Census, Settled};
 use certificate::Sums;
 use class::{Class, scaled};
+use crowd::{Settled, sift};
 use profiles::position_at;
 
 /// One class of a call.
@@ -51,11 +55,10 @@ pub struct SharedKnapsack {
     choice: Vec<u8>,
     bracket: Bracket,
     undecided: Vec<Undecided>,
-    standing: Vec<Standing>,
-    census: Census,
-    /// Classes that have not settled, and the bracket that the others have settled in.
-    open: Vec<u32>,
-    surveyed: [f32; 2],
+    blocked: Vec<bool>,
+    /// Of a crowd: which class of it each of `classes` is, and what those that are not among them add up to.
+    owners: Vec<u32>,
+    settled: Settled,
     histogram: Vec<u64>,
     rival: Vec<u8>,
     affordable: Vec<ProfileItem>,
@@ -66,23 +69,26 @@ pub struct SharedKnapsack {
 struct Bracket {
     lambda: f32,
     width: f32,
+    last: Last,
 }
 
 impl Default for Bracket {
     fn default() -> Self {
-        Self { lambda: 0.0, width: *WIDTH.start() }
+        Self { lambda: 0.0, width: *WIDTH.start(), last: Last::Nothing }
     }
 }
 
-/// What a class may still do.
+/// How the last call ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Standing {
-    /// It may take steps.
-    Open,
-    /// It holds its position whatever λ in the bracket is, and is counted in the census.
-    Settled,
-    /// A step of it did not fit: it takes no later one.
-    Blocked,
+enum Last {
+    /// There was none.
+    Nothing,
+    /// Not even the cheapest choice was within the budget.
+    Cheapest,
+    /// The budget ended at λ.
+    Lambda,
+    /// Everything was within the budget.
+    Everything,
 }
 
 /// A step inside the bracket.
@@ -119,14 +125,12 @@ impl Survey {
         self.down_to = self.down_to.saturating_add(class.cost(down_to));
     }
 
-    fn add_settled(&mut self, settled: &Settled<'_>) {
-        let last = settled.positions.len() - 1;
-        let here = settled.cost(settled.position);
-        self.cheapest = self.cheapest.saturating_add(settled.cost(0));
-        self.best = self.best.saturating_add(settled.cost(last));
-        self.widest = self.widest.max(settled.positions[last].ticks - settled.positions[0].ticks);
+    fn add_settled(&mut self, settled: &Settled) {
+        self.cheapest = self.cheapest.saturating_add(settled.cheapest);
+        self.best = self.best.saturating_add(settled.best);
+        self.widest = self.widest.max(settled.widest);
         for sum in [&mut self.held, &mut self.above, &mut self.down_to] {
-            *sum = sum.saturating_add(here);
+            *sum = sum.saturating_add(settled.held);
         }
     }
 }
@@ -144,6 +148,25 @@ struct Critical {
     lambda: f32,
     step: Option<Pin>,
     steps: usize,
+    /// The fill window that steps are taken in, and whether what is left is too little to go on.
+    window: usize,
+    done: bool,
+}
+
+impl Critical {
+    /// The lowest slope of the window.
+    fn low(&self) -> f32 {
+        (self.lambda * FILL_WINDOWS[self.window]).max(f32::MIN_POSITIVE)
+    }
+
+    /// Leaves the windows that end above `slope`, the last of them for good. It is done when too little of the budget is
+    /// left at the end of any: whether it is depends on nothing but λ and the steps above, not on how they were found.
+    fn descend(&mut self, slope: f32, room: u64, budget: u64) {
+        while self.step.is_some() && !self.done && self.low() > slope {
+            self.done = room <= budget / FILL_ENOUGH || self.window + 1 == FILL_WINDOWS.len();
+            self.window += usize::from(!self.done);
+        }
+    }
 }
 
 /// Bracket widths around the last λ, as fractions: narrower means fewer steps to sort, wider fewer misses. A miss costs
@@ -155,15 +178,12 @@ const WIDTH: std::ops::RangeInclusive<f32> = 0.01..=0.1;
 const BUCKETS: usize = 1 << 12;
 const BUCKET_SHIFT: u32 = 31 - 12;
 
-/// The fill looks for steps down to these fractions of the critical slope, a pass each. Closer windows find the better
-/// steps first where many would fit, and cost more passes.
+/// After the first step that does not fit, others are looked for down to these fractions of its slope, a pass each. More
+/// windows find less to sort in each, and cost more passes.
 const FILL_WINDOWS: [f32; 8] = [0.95, 0.8, 0.5, 0.2, 0.05, 0.01, 0.001, 0.0];
 
 /// The fill stops when less than this fraction of the budget is left: it would buy less than looking costs.
 const FILL_ENOUGH: u64 = 1 << 15;
-
-/// The bracket that no λ is in: nothing has settled.
-const NOTHING: [f32; 2] = [f32::INFINITY, 0.0];
 
 /// Above this relative gap the rival choice, critical step first, is tried as well.
 const RIVAL_GAP: f64 = 1e-3;
@@ -184,13 +204,76 @@ impl SharedKnapsack {
     /// Time: O(positions) and a sort of the steps inside the bracket. Allocates only to grow its scratch.
     pub fn solve(&mut self, budget: u64, ease: u64, key: impl Fn(usize) -> u128) -> Outcome {
         let shared = self.profiles.len();
-        self.choice.clear();
-        self.choice.resize(self.classes.len(), 0);
-        self.chosen.clear();
-        self.chosen.resize(self.classes.len(), 0);
+        self.owners.clear();
+        self.settled = Settled::default();
         let outcome = self.choose(budget, ease.min(budget), &key);
+        self.note_chosen();
         self.profiles.truncate(shared);
         outcome
+    }
+
+    /// [`SharedKnapsack::solve`] of a crowd, of which only the classes that are not settled are looked at one by one:
+    /// afterwards [`SharedKnapsack::changed`] lists those. `None` where that is not enough to be sure of the same answer:
+    /// where λ has moved out of its bracket, where an item takes a large part of the budget, or the gap is large. Then
+    /// there is nothing to read, and [`SharedKnapsack::solve`] has to be called.
+    ///
+    /// `key` is given places in the crowd. Time: two passes over the crowd's columns.
+    pub fn solve_crowd<F: Fn(&Profiles, usize) -> SharedClass>(
+        &mut self,
+        crowd: &Crowd<'_, F>,
+        budget: u64,
+        ease: u64,
+        key: impl Fn(usize) -> u128,
+    ) -> Option<Outcome> {
+        let bracket = self.crowd_bracket()?;
+        self.sift(crowd, bracket);
+        let survey = self.survey(bracket, None);
+        let ease = ease.min(budget);
+        let Survey { cheapest, best, held, widest, above, down_to, .. } = survey;
+        if cheapest > budget {
+            let all_cheapest = self.settled.held == self.settled.cheapest;
+            return all_cheapest.then(|| self.keep_cheapest(cheapest - budget, budget));
+        }
+        let target = held.clamp(ease, budget);
+        if best <= target {
+            let all_best = self.settled.held == self.settled.best;
+            return all_best.then(|| self.take_all(budget));
+        }
+        let is_safe = widest <= target - cheapest && above <= target && target < down_to;
+        if !is_safe {
+            self.bracket.widen();
+            return None;
+        }
+        self.bracket.narrow();
+        let critical = self.greedy_in(crowd, survey, target, bracket, &key);
+        self.bracket.end_at(critical.lambda);
+        let sums = self.certify(critical.lambda);
+        self.note_chosen();
+        let is_near = sums.outcome(target, &self.settled).priced_gap() <= RIVAL_GAP;
+        is_near.then(|| Outcome { steps: critical.steps, ..sums.outcome(budget, &self.settled) })
+    }
+
+    /// [`SharedKnapsack::solve`] of a crowd, every class of which is looked at: afterwards [`SharedKnapsack::changed`] lists
+    /// them all.
+    pub fn solve_all<F: Fn(&Profiles, usize) -> SharedClass>(
+        &mut self,
+        crowd: &Crowd<'_, F>,
+        budget: u64,
+        ease: u64,
+        key: impl Fn(usize) -> u128,
+    ) -> Outcome {
+        let Self { profiles, classes, .. } = self;
+        classes.clear();
+        classes.extend((0..crowd.weight.len()).map(|i| (crowd.class)(profiles, i)));
+        let outcome = self.solve(budget, ease, key);
+        self.owners.extend(0..crowd.weight.len() as u32);
+        outcome
+    }
+
+    /// The classes of a crowd that were looked at one by one, ascending but for the last ones, and the codes of their
+    /// chosen items. All others hold what they held.
+    pub fn changed(&self) -> impl Iterator<Item = (usize, u8)> {
+        self.owners.iter().zip(&self.chosen).map(|(&owner, &item)| (owner as usize, item))
     }
 
     /// Forgets the last λ: the next call starts from the histogram.
@@ -201,29 +284,131 @@ impl SharedKnapsack {
     fn choose(&mut self, budget: u64, ease: u64, key: &impl Fn(usize) -> u128) -> Outcome {
         let mut survey = self.survey(self.warm_bracket(), None);
         if survey.cheapest > budget {
-            self.choice.fill(0);
-            let shortfall = survey.cheapest - budget;
-            return Outcome { shortfall, ..self.certify(0.0).outcome(budget) };
+            return self.keep_cheapest(survey.cheapest - budget, budget);
         }
         let target = self.target(&survey, budget, ease);
         if survey.best <= target {
-            self.take_all();
-            return self.certify(0.0).outcome(budget);
+            return self.take_all(budget);
         }
         if survey.widest > target - survey.cheapest {
             self.drop_unaffordable(target - survey.cheapest);
             survey = self.survey(self.warm_bracket(), None);
         }
         let critical = self.greedy(survey, target, None, key);
-        self.bracket.lambda = critical.lambda;
+        self.bracket.end_at(critical.lambda);
         let sums = self.certify(critical.lambda);
-        let outcome = Outcome { steps: critical.steps, ..sums.outcome(budget) };
+        let outcome = Outcome { steps: critical.steps, ..sums.outcome(budget, &self.settled) };
         match critical.step {
-            Some(step) if sums.outcome(target).priced_gap() > RIVAL_GAP => {
+            Some(step) if sums.outcome(target, &self.settled).priced_gap() > RIVAL_GAP => {
                 self.better_of(outcome, step, target, key)
             }
             _ => outcome,
         }
+    }
+
+    /// Nothing is affordable: every class at its cheapest position.
+    fn keep_cheapest(&mut self, shortfall: u64, budget: u64) -> Outcome {
+        self.choice.fill(0);
+        self.bracket.last = Last::Cheapest;
+        self.note_chosen();
+        Outcome { shortfall, ..self.certify(0.0).outcome(budget, &self.settled) }
+    }
+
+    /// Everything is affordable: every class at its best position.
+    fn take_all(&mut self, budget: u64) -> Outcome {
+        for i in 0..self.classes.len() {
+            self.choice[i] = self.class(i).last();
+        }
+        self.bracket.last = Last::Everything;
+        self.note_chosen();
+        self.certify(0.0).outcome(budget, &self.settled)
+    }
+
+    /// Notes the items of the choice.
+    fn note_chosen(&mut self) {
+        let items = self
+            .classes
+            .iter()
+            .zip(&self.choice)
+            .map(|(class, &position)| self.profiles.positions(class.profile)[usize::from(position)].item);
+        self.chosen.clear();
+        self.chosen.extend(items);
+    }
+
+    /// Puts the classes of a crowd that are not settled in the bracket into `classes`, and adds up the others.
+    fn sift<F: Fn(&Profiles, usize) -> SharedClass>(&mut self, crowd: &Crowd<'_, F>, bracket: [f32; 2]) {
+        let Self { profiles, classes, owners, settled, .. } = self;
+        classes.clear();
+        owners.clear();
+        *settled = Settled::all(profiles, crowd.census);
+        let mut all = *settled;
+        sift(crowd.weight, crowd.place, profiles.holds(), bracket, settled, |i| {
+            if (crowd.place[i] as usize) < profiles.holds().len() {
+                all.dismiss(profiles, crowd.place[i] as usize);
+            }
+            classes.push((crowd.class)(profiles, i));
+            owners.push(i as u32);
+        });
+        let Settled { value, least, unit, .. } = *settled;
+        *settled = Settled { value, least, unit, ..all };
+    }
+
+    /// The greedy of a crowd, the budget being inside the bracket.
+    fn greedy_in<F: Fn(&Profiles, usize) -> SharedClass>(
+        &mut self,
+        crowd: &Crowd<'_, F>,
+        survey: Survey,
+        budget: u64,
+        bracket: [f32; 2],
+        key: &impl Fn(usize) -> u128,
+    ) -> Critical {
+        let mut critical = Critical::default();
+        let mut room = budget - survey.above;
+        let owners = std::mem::take(&mut self.owners);
+        self.take(budget, &mut room, &mut critical, &|i| key(owners[i] as usize));
+        self.owners = owners;
+        critical.descend(survey.low, room, budget);
+        let mut above = survey.low;
+        while critical.step.is_some() && !critical.done {
+            let low = critical.low();
+            self.unsettle(crowd, bracket, [low, above], room);
+            self.gather(low, room);
+            let owners = std::mem::take(&mut self.owners);
+            self.take(budget, &mut room, &mut critical, &|i| key(owners[i] as usize));
+            self.owners = owners;
+            critical.descend(low.next_down(), room, budget);
+            above = low;
+        }
+        critical
+    }
+
+    /// Takes settled classes back into `classes` whose next step is between `low` and `above` and fits.
+    fn unsettle<F: Fn(&Profiles, usize) -> SharedClass>(
+        &mut self,
+        crowd: &Crowd<'_, F>,
+        bracket: [f32; 2],
+        [low, above]: [f32; 2],
+        room: u64,
+    ) {
+        let Self { profiles, classes, owners, settled, choice, blocked, .. } = self;
+        crowd::openings(crowd, profiles.holds(), bracket, low, |i| {
+            let class = (crowd.class)(profiles, i);
+            let (position, slope) = {
+                let class = Class::new(profiles, &class);
+                let held = class.held();
+                let fits = held < class.last() && class.cost(held + 1) - class.cost(held) <= room;
+                (held, if fits { class.slope(held) } else { 0.0 })
+            };
+            if slope >= low && slope < above {
+                let item = crowd.place[i] as usize;
+                settled.dismiss(profiles, item);
+                settled.devalue(crowd.weight[i], &profiles.holds()[item]);
+                classes.push(class);
+                owners.push(i as u32);
+                choice.push(position);
+                blocked.push(false);
+            }
+        });
     }
 
     fn class(&self, i: usize) -> Class<'_> {
@@ -248,7 +433,7 @@ impl SharedKnapsack {
 
     /// The bracket around the last λ; an empty one at the top when there is none.
     fn warm_bracket(&self) -> [f32; 2] {
-        let Bracket { lambda, width } = self.bracket;
+        let Bracket { lambda, width, .. } = self.bracket;
         if lambda > 0.0 {
             [(lambda * (1.0 - width)).max(f32::MIN_POSITIVE), lambda * (1.0 + width)]
         } else {
@@ -256,49 +441,42 @@ impl SharedKnapsack {
         }
     }
 
+    /// The bracket to sift a crowd by: around the last λ, or beyond all slopes where no step was affordable or all were.
+    fn crowd_bracket(&self) -> Option<[f32; 2]> {
+        match self.bracket.last {
+            Last::Nothing => None,
+            Last::Cheapest => Some([f32::MAX; 2]),
+            Last::Everything => Some([f32::MIN_POSITIVE; 2]),
+            Last::Lambda => (self.bracket.lambda > 0.0).then(|| self.warm_bracket()),
+        }
+    }
+
     /// One pass: every class takes its steps at or above the bracket's upper end into `choice`, its steps inside go to
-    /// `undecided`, and the costs are summed. Classes with nothing to decide settle.
+    /// `undecided`, and the costs are summed.
     fn survey(&mut self, bracket: [f32; 2], pin: Option<Pin>) -> Survey {
         let [low, high] = bracket;
         let mut survey = Survey { low, ..Survey::default() };
-        self.surveyed = bracket;
         self.undecided.clear();
-        self.open.clear();
-        self.standing.clear();
-        self.standing.resize(self.classes.len(), Standing::Open);
-        self.census.begin(&self.profiles, &self.classes);
+        self.choice.clear();
+        self.blocked.clear();
+        self.blocked.resize(self.classes.len(), false);
         for (i, class) in self.classes.iter().enumerate() {
             let class = Class::new(&self.profiles, class);
-            let pinned = pin.filter(|p| p.class == i);
-            if pinned.is_none() && self.census.settles(&class, bracket) {
-                let held = class.held();
-                self.standing[i] = Standing::Settled;
-                self.choice[i] = held;
-                self.chosen[i] = class.positions[usize::from(held)].item;
-                continue;
-            }
-            self.open.push(i as u32);
-            let (above, down_to) = match pinned {
+            let (above, down_to) = match pin.filter(|p| p.class == i) {
                 Some(pin) => (pin.position, pin.position),
                 None => {
                     let above = class.reach(class.held(), high);
                     (above, class.reach(above, low))
                 }
             };
-            self.choice[i] = above;
+            self.choice.push(above);
             for from in above..down_to {
                 self.undecided.push(Undecided { slope: class.slope(from), class: i as u32, from });
             }
             survey.add(&class, above, down_to);
         }
-        self.census.settled(&self.profiles).for_each(|settled| survey.add_settled(&settled));
+        survey.add_settled(&self.settled);
         survey
-    }
-
-    fn take_all(&mut self) {
-        for i in 0..self.classes.len() {
-            self.choice[i] = self.class(i).last();
-        }
     }
 
     /// Gives every class that has an item costing more than `room` beyond its cheapest one a profile without such
@@ -332,23 +510,27 @@ impl SharedKnapsack {
     ) -> Critical {
         let survey = self.bracketed(survey, budget, pin);
         if let Some(pin) = pin {
-            self.standing[pin.class] = Standing::Blocked;
+            self.blocked[pin.class] = true;
         }
         let mut critical = Critical::default();
         let mut room = budget - survey.above;
-        self.take(&mut room, &mut critical, key);
-        self.fill(budget, room, survey.low, &mut critical, key);
+        self.take(budget, &mut room, &mut critical, key);
+        critical.descend(survey.low, room, budget);
+        while critical.step.is_some() && !critical.done {
+            self.gather(critical.low(), room);
+            self.take(budget, &mut room, &mut critical, key);
+            critical.descend(critical.low().next_down(), room, budget);
+        }
         critical
     }
 
     /// The survey if the budget lies inside its bracket, else one of the histogram's bracket.
     fn bracketed(&mut self, survey: Survey, budget: u64, pin: Option<Pin>) -> Survey {
-        let hit = survey.above <= budget && budget < survey.down_to;
-        let width = self.bracket.width * if hit { 0.9 } else { 4.0 };
-        self.bracket.width = width.clamp(*WIDTH.start(), *WIDTH.end());
-        if hit {
+        if survey.above <= budget && budget < survey.down_to {
+            self.bracket.narrow();
             return survey;
         }
+        self.bracket.widen();
         let bracket = self.cold_bracket(budget, pin);
         self.survey(bracket, pin)
     }
@@ -381,7 +563,7 @@ impl SharedKnapsack {
     }
 
     /// Takes undecided steps in order of slope while they fit; a class whose step does not fit takes no later one.
-    fn take(&mut self, room: &mut u64, critical: &mut Critical, key: &impl Fn(usize) -> u128) {
+    fn take(&mut self, budget: u64, room: &mut u64, critical: &mut Critical, key: &impl Fn(usize) -> u128) {
         self.undecided.sort_unstable_by(|a, b| {
             b.slope
                 .total_cmp(&a.slope)
@@ -390,22 +572,21 @@ impl SharedKnapsack {
         });
         critical.steps += self.undecided.len();
         for step in &self.undecided {
+            critical.descend(step.slope, *room, budget);
+            if critical.done {
+                break;
+            }
             let i = step.class as usize;
             let class = Class::new(&self.profiles, &self.classes[i]);
             let cost = class.cost(step.from + 1) - class.cost(step.from);
-            if self.standing[i] == Standing::Blocked {
+            if self.blocked[i] {
                 continue;
-            }
-            if self.standing[i] == Standing::Settled {
-                self.census.remove(&class);
-                self.open.push(step.class);
-                self.standing[i] = Standing::Open;
             }
             if cost <= *room {
                 *room -= cost;
                 self.choice[i] = step.from + 1;
             } else {
-                self.standing[i] = Standing::Blocked;
+                self.blocked[i] = true;
                 if critical.step.is_none() {
                     critical.step = Some(Pin { class: i, position: step.from + 1 });
                     critical.lambda = step.slope;
@@ -414,35 +595,13 @@ impl SharedKnapsack {
         }
     }
 
-    /// Spends what is left on steps below the bracket, best first.
-    fn fill(
-        &mut self,
-        budget: u64,
-        mut room: u64,
-        bracket_low: f32,
-        critical: &mut Critical,
-        key: &impl Fn(usize) -> u128,
-    ) {
-        for window in FILL_WINDOWS {
-            if room <= budget / FILL_ENOUGH {
-                break;
-            }
-            let low = (bracket_low * window).max(f32::MIN_POSITIVE);
-            if !self.gather(low, room) {
-                break;
-            }
-            self.take(&mut room, critical, key);
-        }
-    }
-
-    /// Collects the untaken steps of slope `low` or more that fit by themselves. False when no class has a step left.
-    fn gather(&mut self, low: f32, room: u64) -> bool {
+    /// Collects the untaken steps of slope `low` or more that fit by themselves.
+    fn gather(&mut self, low: f32, room: u64) {
         self.undecided.clear();
-        let mut open = false;
         for i in 0..self.classes.len() {
             let class = Class::new(&self.profiles, &self.classes[i]);
             let mut from = self.choice[i];
-            let mut fits = self.standing[i] != Standing::Blocked;
+            let mut fits = !self.blocked[i];
             while fits && class.slope(from) >= low {
                 fits = class.cost(from + 1) - class.cost(from) <= room;
                 if fits {
@@ -451,12 +610,8 @@ impl SharedKnapsack {
                 }
             }
             // Steps collected before the one that does not fit may still be taken.
-            if !fits && from == self.choice[i] && self.standing[i] == Standing::Open {
-                self.standing[i] = Standing::Blocked;
-            }
-            open |= fits && from < class.last();
+            self.blocked[i] |= !fits && from == self.choice[i];
         }
-        open || !self.undecided.is_empty()
     }
 
     /// Tries the choice that takes the critical step first, and keeps the better one.
@@ -464,37 +619,38 @@ impl SharedKnapsack {
         self.rival.clone_from(&self.choice);
         let survey = self.survey([f32::MAX; 2], Some(step));
         let critical = self.greedy(survey, budget, Some(step), key);
-        let rival = self.certify(critical.lambda).outcome(budget);
+        let rival = self.certify(critical.lambda).outcome(budget, &self.settled);
         let steps = found.steps + critical.steps;
         if rival.priced_benefit > found.priced_benefit {
             let Outcome { upper_bound, priced_bound, lambda, .. } = found;
             return Outcome { upper_bound, priced_bound, lambda, steps, ..rival };
         }
         std::mem::swap(&mut self.rival, &mut self.choice);
-        self.surveyed = NOTHING;
-        self.certify(critical.lambda);
         Outcome { steps, ..found }
     }
 
-    /// Notes the items of the choice, and sums up what it comes to and what is possible at λ.
-    fn certify(&mut self, lambda: f32) -> Sums {
-        let mut sums = Sums::new(lambda, self.classes.len(), self.census.unit());
-        let [low, high] = self.surveyed;
-        if low <= lambda && lambda <= high {
-            self.census.settled(&self.profiles).for_each(|settled| sums.add_settled(&settled));
-            for at in 0..self.open.len() {
-                self.certify_class(self.open[at] as usize, &mut sums);
-            }
-        } else {
-            (0..self.classes.len()).for_each(|i| self.certify_class(i, &mut sums));
+    /// Sums up what the choice comes to and what is possible at λ.
+    fn certify(&self, lambda: f32) -> Sums {
+        let mut sums = Sums::new(lambda, &self.classes);
+        for (class, &position) in self.classes.iter().zip(&self.choice) {
+            sums.add(&Class::new(&self.profiles, class), position);
         }
         sums
     }
+}
 
-    fn certify_class(&mut self, i: usize, sums: &mut Sums) {
-        let class = Class::new(&self.profiles, &self.classes[i]);
-        let position = self.choice[i];
-        self.chosen[i] = class.positions[usize::from(position)].item;
-        sums.add(&class, position);
+impl Bracket {
+    fn end_at(&mut self, lambda: f32) {
+        (self.lambda, self.last) = (lambda, Last::Lambda);
+    }
+
+    /// After a hit.
+    fn narrow(&mut self) {
+        self.width = (self.width * 0.9).max(*WIDTH.start());
+    }
+
+    /// After a miss.
+    fn widen(&mut self) {
+        self.width = (self.width * 4.0).min(*WIDTH.end());
     }
 }

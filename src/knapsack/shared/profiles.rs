@@ -3,6 +3,8 @@
 //! Where every item of a class is worth `weight · value` and costs `scale · ticks`, with values and ticks from a small
 //! set of *profiles*, the hull of the class is the hull of its profile whatever weight and scale are. It is made once.
 
+use super::SharedClass;
+use super::crowd::Hold;
 use crate::knapsack::{Item, upper_hull};
 
 /// One vertex of a profile's hull.
@@ -40,8 +42,10 @@ pub struct Profiles {
     spans: Vec<Span>,
     positions: Vec<Position>,
     items: Vec<ProfileItem>,
-    /// Per item, the costliest position that costs no more than it.
+    /// Per item, its profile, the costliest position that costs no more than it, and when a class holds it.
+    owner: Vec<u32>,
     held: Vec<u8>,
+    holds: Vec<Hold>,
     points: Vec<Item>,
     hull: Vec<u32>,
 }
@@ -60,7 +64,9 @@ impl Profiles {
         let end = self.spans.last().copied().unwrap_or_default();
         self.positions.truncate(end.positions.1 as usize);
         self.items.truncate(end.items.1 as usize);
+        self.owner.truncate(end.items.1 as usize);
         self.held.truncate(end.items.1 as usize);
+        self.holds.truncate(end.items.1 as usize);
     }
 
     /// How many profiles there are.
@@ -85,7 +91,9 @@ impl Profiles {
             self.positions.push(position(items[i as usize], next));
         }
         let positions = &self.positions[first.0..];
+        self.owner.resize(self.owner.len() + items.len(), self.spans.len() as u32);
         self.held.extend(items.iter().map(|item| position_at(positions, item.ticks)));
+        self.holds.extend(items.iter().map(|item| hold(positions, item)));
         self.items.extend_from_slice(items);
         self.spans.push(Span {
             positions: (first.0 as u32, self.positions.len() as u32),
@@ -100,19 +108,26 @@ impl Profiles {
         &self.positions[start as usize..end as usize]
     }
 
-    /// Where the hull of a profile starts among all positions.
-    pub(super) fn place(&self, profile: u32) -> u32 {
-        self.spans[profile as usize].positions.0
+    /// When a class of scale 1 holds an item, for the items of all profiles in the order in which they were pushed.
+    pub(super) fn holds(&self) -> &[Hold] {
+        &self.holds
     }
 
-    /// How many positions all hulls have.
-    pub(super) fn positions_len(&self) -> usize {
-        self.positions.len()
+    /// What a class of scale 1 costs at its cheapest position, at the one that it has with the item of this number, and
+    /// at its best.
+    pub(super) fn item_ticks(&self, item: usize) -> [u64; 3] {
+        let positions = self.positions(self.owner[item]);
+        [
+            positions[0].ticks,
+            positions[usize::from(self.held[item])].ticks,
+            positions[positions.len() - 1].ticks,
+        ]
     }
 
-    /// All hulls, by number.
-    pub(super) fn hulls(&self) -> impl Iterator<Item = &[Position]> {
-        self.spans.iter().map(|s| &self.positions[s.positions.0 as usize..s.positions.1 as usize])
+    /// A class of scale 1 that holds the item of this number, among those of all profiles.
+    pub fn class_at(&self, item: u32, weight: f32, stay: f32) -> SharedClass {
+        let at = item as usize;
+        SharedClass { profile: self.owner[at], weight, scale: 1.0, stay, current: self.held[at] }
     }
 
     /// The items that a profile was made of, in the order they were given.
@@ -135,6 +150,18 @@ impl Profiles {
 /// The costliest position of at most so many ticks, or the cheapest.
 pub(super) fn position_at(positions: &[Position], ticks: u64) -> u8 {
     positions.partition_point(|p| p.ticks <= ticks).saturating_sub(1) as u8
+}
+
+/// When an item is held; never where another is at least as good.
+fn hold(positions: &[Position], item: &ProfileItem) -> Hold {
+    let at = usize::from(position_at(positions, item.ticks));
+    let here = positions[at];
+    if here.item != item.item {
+        return Hold::OPEN;
+    }
+    let into = at.checked_sub(1).map(|before| positions[before].next_slope);
+    let out = (at + 1 < positions.len()).then_some(here.next_slope);
+    Hold::new(into, out, here.value, positions[0].value)
 }
 
 fn position(item: ProfileItem, next: Option<ProfileItem>) -> Position {
