@@ -118,9 +118,6 @@ impl PixelSum {
     /// Adding and subtracting this rounds to 2⁻⁶.
     const ROUND: f64 = 3.0 * (1u64 << 45) as f64;
 
-    /// How much rounding may take off an area.
-    pub const HIDDEN_PX2: f64 = 1.0 / 128.0;
-
     /// An area as it counts.
     pub fn rounded(area_px2: f32) -> f64 {
         (f64::from(area_px2) + Self::ROUND) - Self::ROUND
@@ -293,6 +290,17 @@ impl Candidates {
                 *count += 1;
             }
         }
+    }
+
+    /// The candidates without a [place](Candidates::place).
+    pub fn unplaced(&self) -> impl Iterator<Item = usize> + '_ {
+        let placed: u64 = self.census.iter().map(|&count| u64::from(count)).sum();
+        let all = if placed == self.place.len() as u64 { 0 } else { self.place.len() };
+        // Most chunks hold none, and looking at all of one takes a few instructions.
+        let chunks = self.place[..all].chunks(BLOCK).enumerate();
+        let some = chunks.filter(|(_, chunk)| chunk.iter().fold(false, |any, &p| any | (p == NO_PLACE)));
+        let places = some.flat_map(|(at, chunk)| chunk.iter().zip(at * BLOCK..));
+        places.filter(|&(&place, _)| place == NO_PLACE).map(|(_, i)| i)
     }
 
     /// The candidates of a group; empty for a group that is not in this frame.

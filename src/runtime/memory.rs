@@ -16,8 +16,9 @@ struct BlockMemory {
     since_ms: [u32; BLOCK],
     /// The level that the policy wants.
     wanted: [Level; BLOCK],
-    /// The revision of the objects' block that the places hold for; 0 for none.
+    /// The revision of the objects' block that the places hold for, and whether objects counted once then.
     revision: u64,
+    once: bool,
     /// The last of the group's frames in which some of the block was in view.
     frame: u32,
     /// Bit per lane: it was in view in that frame. Memory ends when an object leaves.
@@ -32,6 +33,7 @@ impl BlockMemory {
         since_ms: [0; BLOCK],
         wanted: [Level::NOT_DRAWN; BLOCK],
         revision: 0,
+        once: true,
         frame: 0,
         seen: 0,
         unsteady: 0,
@@ -131,9 +133,9 @@ impl GroupMemory {
         self.stayed += row.known.count_ones();
         self.rows.push(*row);
         let revision = places.objects.block_revisions()[row.block as usize];
-        if memory.revision != revision {
+        if memory.revision != revision || memory.once != places.once {
             memory.renew(row, places, &mut self.unsteady);
-            memory.revision = if places.once { revision } else { 0 };
+            (memory.revision, memory.once) = (revision, places.once);
         }
         if row.known == u16::MAX {
             candidates.previous.extend(memory.wanted.iter().map(|&level| Some(level)));

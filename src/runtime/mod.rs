@@ -16,7 +16,7 @@ use std::ops::Range;
 use crate::cull::{BlockTree, CullOptions, CullReport};
 use crate::feedback::{Feedback, FeedbackOptions, Prediction};
 use crate::frame::OptionsError;
-use crate::frame::{Candidates, Change, FrameId, FrameReport, FrameTime, GroupEnd, GroupId};
+use crate::frame::{Candidates, Change, FrameId, FrameReport, FrameTime, GroupEnd, GroupId, NO_PLACE};
 use crate::knapsack::FixedSum;
 use crate::rate::{BenefitModel, CostModel, Drivers, Seen, Stages, TableRates, rate, weigh};
 use crate::scene::{BLOCK, ObjectId, Objects};
@@ -512,19 +512,13 @@ impl Runtime {
         let Scratch { candidates, tally, all_news, .. } = &mut self.scratch;
         let frame = frame_of(objects, candidates, &self.rates, &self.feedback, &self.report);
         tally.begin(&frame, self.options.transition.kind);
-        for run in 0..candidates.ends.len() {
-            let memory = memory::of_group(&mut self.groups, candidates.ends[run].group);
-            for i in candidates.run(run) {
-                if tally.is_uncounted(candidates, i) {
-                    tally.add(&frame, i, memory.shown_at(candidates.slot[i]));
-                }
-            }
+        for i in candidates.unplaced() {
+            let memory = memory::of_group(&mut self.groups, candidates.group_of(i));
+            tally.add(&frame, i, memory.shown_at(candidates.slot[i]));
         }
-        for &i in all_news.iter() {
-            if !tally.is_uncounted(candidates, i) {
-                let memory = memory::of_group(&mut self.groups, candidates.group_of(i));
-                tally.recount(&frame, i, memory.shown_at(candidates.slot[i]));
-            }
+        for &i in all_news.iter().filter(|&&i| candidates.place[i] != NO_PLACE) {
+            let memory = memory::of_group(&mut self.groups, candidates.group_of(i));
+            tally.recount(&frame, i, memory.shown_at(candidates.slot[i]));
         }
         tally.sum(frame.model, objects.tables())
     }

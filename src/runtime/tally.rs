@@ -1,6 +1,6 @@
 //! What is shown, counted per level, and what that is expected to take.
 
-use crate::frame::{Candidates, NO_PLACE, PixelSum};
+use crate::frame::PixelSum;
 use crate::knapsack::FixedSum;
 use crate::rate::{CostModel, DRIVERS, Drivers, Stages, cost_us, drivers_of};
 use crate::select::Frame;
@@ -25,23 +25,13 @@ const USAGE_UNIT: f64 = (1 << 20) as f64;
 
 impl Tally {
     /// Starts with the census: every candidate with a place, at that place, and the area of all candidates, drawn once.
-    /// Where stages do not add up the census is of no use, and nothing has been counted.
+    /// Where stages do not add up no candidate has a place.
     pub fn begin(&mut self, frame: &Frame<'_>, kind: TransitionKind) {
         (self.kind, self.stages) = (kind, frame.model.stages);
         self.time_us = FixedSum::default();
         self.area = frame.candidates.pixels;
         self.usage.clear();
-        match self.stages {
-            Stages::Sum => {
-                self.usage.extend(frame.candidates.census.iter().map(|&count| i64::from(count) << 20))
-            }
-            Stages::Max => self.usage.resize(frame.rates.len(), 0),
-        }
-    }
-
-    /// Whether candidate `i` has yet to be counted.
-    pub fn is_uncounted(&self, candidates: &Candidates, i: usize) -> bool {
-        self.stages == Stages::Max || candidates.place[i] == NO_PLACE
+        self.usage.extend(frame.candidates.census.iter().map(|&count| i64::from(count) << 20));
     }
 
     /// Counts what is shown of candidate `i` instead of what was counted at its place.

@@ -98,7 +98,7 @@ impl Predictive {
         let candidates = frame.candidates;
         let mut pixels = candidates.pixels;
         self.odd.clear();
-        for i in (0..candidates.len()).filter(|&i| candidates.place[i] == NO_PLACE) {
+        for i in candidates.unplaced() {
             let candidate = frame.candidate(i);
             let own = has_own_hull(frame, &candidate);
             if own {
@@ -112,8 +112,7 @@ impl Predictive {
             self.odd.push(Odd { candidate: i as u32, class });
         }
         self.make_own_hulls(frame);
-        let hidden_px2 = candidates.len() as f64 * PixelSum::HIDDEN_PX2;
-        ceil_ticks(frame.model.pixel_us * self.hulls.ticks_per_us * (pixels.px2() + hidden_px2))
+        ceil_ticks(frame.model.pixel_us * self.hulls.ticks_per_us * pixels.px2())
     }
 
     /// Makes the hulls that are not shared, after all that are, and finds what is held.

@@ -6,6 +6,8 @@
 //! so that sifting the crowd is a loop without branches over two columns. All that the sums need of settled classes is
 //! how many hold each item, and what they weigh.
 
+use glam::{Mat4, Vec4};
+
 use super::profiles::Profiles;
 
 /// The classes of a call, column by column, and how to look at one more closely.
@@ -21,35 +23,30 @@ pub struct Crowd<'a, F> {
     pub class: F,
 }
 
-/// When a class holds an item, and what that is worth to a class of weight 1.
+/// When a class holds an item, and what that is worth to a class of weight 1. A row of four numbers, so that four classes
+/// are turned into columns by a transposition:
+/// - *keep*: the class keeps the step to the item while its weight is at least λ times this;
+/// - *rest*: it takes no further step while its weight is below λ times this;
+/// - *value* of the item, and of the cheapest item of its profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C, align(16))]
-pub(super) struct Hold {
-    /// The class keeps the step to the item while its weight is at least λ times this.
-    keep: f32,
-    /// It takes no further step while its weight is below λ times this.
-    rest: f32,
-    /// Value of the item.
-    value: f32,
-    /// Value of the cheapest item.
-    least: f32,
-}
+pub(super) struct Hold(Vec4);
 
 /// Reciprocals are moved outwards by more than the three roundings of single precision that slopes and comparisons take.
 const OUTWARDS: f32 = 1.0e-6;
 
 impl Hold {
     /// Never settled.
-    pub const OPEN: Self = Self { keep: f32::INFINITY, rest: 0.0, value: 0.0, least: 0.0 };
+    pub const OPEN: Self = Self(Vec4::new(f32::INFINITY, 0.0, 0.0, 0.0));
 
     /// Of a position by the slopes of the steps to it and from it, where there are such.
     pub fn new(into: Option<f32>, out: Option<f32>, value: f32, least: f32) -> Self {
-        Self {
-            keep: into.map_or(0.0, |slope| 1.0 / slope * (1.0 + OUTWARDS)),
-            rest: out.map_or(f32::INFINITY, |slope| 1.0 / slope * (1.0 - OUTWARDS)),
-            value,
-            least,
-        }
+        let keep = into.map_or(0.0, |slope| 1.0 / slope * (1.0 + OUTWARDS));
+        let rest = out.map_or(f32::INFINITY, |slope| 1.0 / slope * (1.0 - OUTWARDS));
+        Self(Vec4::new(keep, rest, value, least))
+    }
+
+    fn settles(self, weight: f32, [low, high]: [f32; 2]) -> bool {
+        (weight >= high * self.0.x) & (weight < low * self.0.y)
     }
 }
 
@@ -100,8 +97,8 @@ impl Settled {
     pub fn devalue(&mut self, weight: f32, hold: &Hold) {
         let rounding = rounding(self.unit);
         let units = |value: f32| ((product(weight, value) + rounding - rounding) / self.unit) as i128;
-        self.value -= units(hold.value);
-        self.least -= units(hold.least);
+        self.value -= units(hold.0.z);
+        self.least -= units(hold.0.w);
     }
 
     /// Benefit where they are, and at the cheapest positions.
@@ -130,36 +127,38 @@ struct Lanes {
     least: [f64; LANES],
 }
 
-/// Finds the classes that are not settled for every λ from `low` to `high`, and tells `open` of each. Adds the benefit of
-/// those that are to `settled`, whose unit follows from the heaviest class.
+/// Finds the classes that are not settled for every λ of the bracket, and tells `open` of each. Adds the benefit of those
+/// that are to `settled`, whose unit follows from the heaviest class. The last of `holds` is open.
 pub(super) fn sift(
     weight: &[f32],
     place: &[u32],
     holds: &[Hold],
-    [low, high]: [f32; 2],
+    bracket: [f32; 2],
     settled: &mut Settled,
     mut open: impl FnMut(usize),
 ) {
     settled.unit = unit_for(heaviest(weight));
     let rounding = rounding(settled.unit);
-    let chunks = weight.chunks(LANES).zip(place.chunks(LANES));
     let mut sums = Lanes { value: [0.0; LANES], least: [0.0; LANES] };
-    for (at, (weight, place)) in chunks.enumerate() {
-        let (mut weights, mut held) = ([0.0; LANES], [Hold::OPEN; LANES]);
-        weights[..weight.len()].copy_from_slice(weight);
-        for (hold, &place) in held.iter_mut().zip(place) {
-            *hold = holds.get(place as usize).copied().unwrap_or(Hold::OPEN);
-        }
-        let stays = sift_lanes(&weights, &held, low, high, rounding, &mut sums);
-        let mut opened = !stays & (u16::MAX >> (LANES - weight.len()));
+    let mut told = |at: usize, mut opened: u16| {
         while opened != 0 {
             open(at * LANES + opened.trailing_zeros() as usize);
             opened &= opened - 1;
         }
+    };
+    let (weights, last_weights) = weight.as_chunks::<LANES>();
+    let (places, last_places) = place.as_chunks::<LANES>();
+    for (at, (weight, place)) in weights.iter().zip(places).enumerate() {
+        told(at, !sift_lanes(weight, place, holds, bracket, rounding, &mut sums));
         if at % CARRY_EVERY == CARRY_EVERY - 1 {
             carry(&mut sums, settled);
         }
     }
+    let (mut weight, mut place) = ([0.0; LANES], [u32::MAX; LANES]);
+    weight[..last_weights.len()].copy_from_slice(last_weights);
+    place[..last_places.len()].copy_from_slice(last_places);
+    let opened = !sift_lanes(&weight, &place, holds, bracket, rounding, &mut sums);
+    told(weights.len(), opened & ((1u32 << last_weights.len()) - 1) as u16);
     carry(&mut sums, settled);
 }
 
@@ -168,14 +167,13 @@ pub(super) fn sift(
 pub(super) fn openings<F>(
     crowd: &Crowd<'_, F>,
     holds: &[Hold],
-    [bracket_low, bracket_high]: [f32; 2],
+    bracket: [f32; 2],
     low: f32,
     mut open: impl FnMut(usize),
 ) {
-    for (i, (&w, &place)) in crowd.weight.iter().zip(crowd.place).enumerate() {
+    for (i, (&weight, &place)) in crowd.weight.iter().zip(crowd.place).enumerate() {
         let Some(hold) = holds.get(place as usize) else { continue };
-        let is_settled = (w >= bracket_high * hold.keep) & (w < bracket_low * hold.rest);
-        if is_settled & (w >= low * hold.rest) {
+        if hold.settles(weight, bracket) & (weight >= low * hold.0.y) {
             open(i);
         }
     }
@@ -184,22 +182,40 @@ pub(super) fn openings<F>(
 /// One chunk: which lanes are settled; their benefit goes into the sums.
 fn sift_lanes(
     weight: &[f32; LANES],
-    held: &[Hold; LANES],
-    low: f32,
-    high: f32,
+    place: &[u32; LANES],
+    holds: &[Hold],
+    [low, high]: [f32; 2],
     rounding: f64,
     sums: &mut Lanes,
 ) -> u16 {
+    let [keep, rest, value, least] = columns(place, holds);
     let mut stays = [0; LANES];
     for lane in 0..LANES {
-        let (w, hold) = (weight[lane], held[lane]);
-        let is_settled = (w >= high * hold.keep) & (w < low * hold.rest);
+        let w = weight[lane];
+        let is_settled = (w >= high * keep[lane]) & (w < low * rest[lane]);
         stays[lane] = u32::from(is_settled);
         let counted = if is_settled { w } else { 0.0 };
-        sums.value[lane] += product(counted, hold.value) + rounding - rounding;
-        sums.least[lane] += product(counted, hold.least) + rounding - rounding;
+        sums.value[lane] += product(counted, value[lane]) + rounding - rounding;
+        sums.least[lane] += product(counted, least[lane]) + rounding - rounding;
     }
     stays.iter().enumerate().fold(0, |mask, (lane, &bit)| mask | bit << lane) as u16
+}
+
+/// The rows of a chunk's items, as columns.
+fn columns(place: &[u32; LANES], holds: &[Hold]) -> [[f32; LANES]; 4] {
+    let last = holds.len() - 1;
+    let row = |place: u32| holds[(place as usize).min(last)].0;
+    let mut columns = [[0.0; LANES]; 4];
+    for (quad, places) in place.as_chunks::<4>().0.iter().enumerate() {
+        let [a, b, c, d] = places.map(row);
+        let turned = Mat4::from_cols(a, b, c, d).transpose();
+        for (column, part) in
+            columns.iter_mut().zip([turned.x_axis, turned.y_axis, turned.z_axis, turned.w_axis])
+        {
+            column[quad * 4..][..4].copy_from_slice(&part.to_array());
+        }
+    }
+    columns
 }
 
 fn product(weight: f32, value: f32) -> f64 {

@@ -343,7 +343,7 @@ impl SharedKnapsack {
         *settled = Settled::all(profiles, crowd.census);
         let mut all = *settled;
         sift(crowd.weight, crowd.place, profiles.holds(), bracket, settled, |i| {
-            if (crowd.place[i] as usize) < profiles.holds().len() {
+            if (crowd.place[i] as usize) < crowd.census.len() {
                 all.dismiss(profiles, crowd.place[i] as usize);
             }
             classes.push((crowd.class)(profiles, i));

@@ -67,6 +67,7 @@ impl Profiles {
         self.owner.truncate(end.items.1 as usize);
         self.held.truncate(end.items.1 as usize);
         self.holds.truncate(end.items.1 as usize);
+        self.holds.push(Hold::OPEN);
     }
 
     /// How many profiles there are.
@@ -93,7 +94,9 @@ impl Profiles {
         let positions = &self.positions[first.0..];
         self.owner.resize(self.owner.len() + items.len(), self.spans.len() as u32);
         self.held.extend(items.iter().map(|item| position_at(positions, item.ticks)));
+        self.holds.pop();
         self.holds.extend(items.iter().map(|item| hold(positions, item)));
+        self.holds.push(Hold::OPEN);
         self.items.extend_from_slice(items);
         self.spans.push(Span {
             positions: (first.0 as u32, self.positions.len() as u32),
@@ -108,7 +111,8 @@ impl Profiles {
         &self.positions[start as usize..end as usize]
     }
 
-    /// When a class of scale 1 holds an item, for the items of all profiles in the order in which they were pushed.
+    /// When a class of scale 1 holds an item, for the items of all profiles in the order in which they were pushed, and an
+    /// open one at the end.
     pub(super) fn holds(&self) -> &[Hold] {
         &self.holds
     }
