@@ -1,7 +1,8 @@
 //! The frame loop's greedy against slow twins: the textbook's greedy, from scratch, and exhaustive search.
 
 use lod_budget::knapsack::{
-    Instance, Item, Outcome, Position, ProfileItem, Profiles, SharedClass, SharedKnapsack, exact,
+    Crowd, Instance, Item, OddClass, Outcome, Position, ProfileItem, Profiles, SharedClass, SharedKnapsack,
+    exact,
 };
 use proptest::prelude::*;
 
@@ -169,13 +170,9 @@ impl<'a> Textbook<'a> {
     /// The answers that the solver may give, if the gap that it certifies is the right one: two where the greedy and its
     /// rival are worth the same.
     fn answers(&self, budget: u64, outcome: &Outcome) -> Vec<Vec<u8>> {
-        let tops: Vec<Position> = self.classes.iter().flat_map(|c| hull(&c.items).last().copied()).collect();
-        if self.classes.iter().zip(&tops).map(|(c, top)| c.cost(top.ticks)).sum::<u64>() <= budget {
-            return vec![tops.iter().map(|top| top.item).collect()];
-        }
         let plain = self.greedy(budget, None);
         let value = self.priced(&plain.positions);
-        let gap = (outcome.priced_bound - value) / (outcome.priced_bound - outcome.minimum_benefit);
+        let gap = (outcome.priced_bound - value) / (outcome.upper_bound - outcome.minimum_benefit);
         let mut answers = vec![self.items(&plain.positions)];
         if let Some(critical) = plain.critical.filter(|_| gap > 1e-3 * (1.0 - TIE)) {
             let rival = self.greedy(budget, Some(critical));
@@ -324,6 +321,95 @@ proptest! {
         let crumbs = f64::from(taken.lambda) * (budget >> 15) as f64;
         let slack = 1e-6 * outcome.priced_benefit + 1e-6;
         prop_assert!(outcome.priced_benefit >= book.priced(&taken.positions) - crumbs - slack);
+    }
+}
+
+/// A crowd: profiles, and per class the profile, the weight and the price of switching. What each class holds follows from
+/// call to call; an odd one holds nothing that is counted.
+#[derive(Clone, Debug)]
+struct Scene {
+    profiles: Vec<Vec<ProfileItem>>,
+    members: Vec<(prop::sample::Index, f32, f32, bool)>,
+}
+
+fn scene() -> impl Strategy<Value = Scene> {
+    let weight = prop_oneof![1 => Just(0.0f32), 2 => Just(1.0), 8 => 0.001f32..1000.0];
+    let stay = prop_oneof![2 => Just(0.0f32), 1 => Just(0.2), 1 => Just(0.7)];
+    let member = (any::<prop::sample::Index>(), weight, stay, prop::bool::weighted(0.1));
+    (prop::collection::vec(items(), 1..5), prop::collection::vec(member, 0..120))
+        .prop_map(|(profiles, members)| Scene { profiles, members })
+}
+
+/// One call: the budget as a share, its dead band, and how the weights have changed.
+fn call() -> impl Strategy<Value = (f64, f64, Vec<f32>)> {
+    (-0.05f64..1.1, prop_oneof![Just(1.0), 0.9..1.0], prop::collection::vec(0.5f32..2.0, 7))
+}
+
+impl Scene {
+    /// The solver with the profiles, and where the items of each start.
+    fn solver(&self) -> (SharedKnapsack, Vec<u32>) {
+        let mut solver = SharedKnapsack::default();
+        let mut starts = vec![0];
+        for items in &self.profiles {
+            solver.profiles.push(items);
+            starts.push(starts[starts.len() - 1] + items.len() as u32);
+        }
+        (solver, starts)
+    }
+
+    fn budget(&self, share: f64) -> u64 {
+        let ticks = |profile: &Vec<ProfileItem>| profile.iter().map(|i| i.ticks).collect::<Vec<_>>();
+        let of = |best: fn(&Vec<u64>) -> u64| -> u64 {
+            self.members.iter().map(|m| best(&ticks(m.0.get(&self.profiles)))).sum()
+        };
+        let least = of(|t| t.iter().copied().min().unwrap_or(0));
+        let most = of(|t| t.iter().copied().max().unwrap_or(0));
+        (least as f64 + (most - least) as f64 * share).max(0.0) as u64
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 600, ..ProptestConfig::default() })]
+
+    /// Sifted or listed, warm or cold: the same items, and sums that differ by rounding alone.
+    #[test]
+    fn a_crowd_is_answered_as_its_list(scene in scene(), calls in prop::collection::vec(call(), 1..7)) {
+        let ((mut crowded, starts), (mut listed, _)) = (scene.solver(), scene.solver());
+        let item_at = |m: usize, code: u8| starts[scene.members[m].0.index(scene.profiles.len())] + u32::from(code);
+        let mut held: Vec<u8> = vec![0; scene.members.len()];
+        for (share, ease, drift) in calls {
+            let budget = scene.budget(share);
+            let ease = (budget as f64 * ease) as u64;
+            let weight: Vec<f32> =
+                scene.members.iter().enumerate().map(|(m, member)| member.1 * drift[m % drift.len()]).collect();
+            let is_odd = |m: usize| scene.members[m].3;
+            let place: Vec<u32> =
+                (0..held.len()).map(|m| if is_odd(m) { u32::MAX } else { item_at(m, held[m]) }).collect();
+            let mut census = vec![0; starts[starts.len() - 1] as usize];
+            place.iter().filter(|&&p| p != u32::MAX).for_each(|&p| census[p as usize] += 1);
+            let class = |m: usize| listed.profiles.class_at(item_at(m, held[m]), weight[m], scene.members[m].2);
+            let classes: Vec<SharedClass> = (0..held.len()).map(class).collect();
+            let odd: Vec<OddClass> = (0..held.len())
+                .filter(|&m| is_odd(m))
+                .map(|m| OddClass { at: m as u32, class: classes[m] })
+                .collect();
+            listed.classes.clone_from(&classes);
+            let plain = listed.solve(budget, ease, |m| m as u128);
+            let stay = |m: usize| scene.members[m].2;
+            let crowd = Crowd { weight: &weight, place: &place, census: &census, odd: &odd, stay };
+            let outcome = crowded.solve_crowd(&crowd, budget, ease, |m| m as u128);
+            let mut found = held.clone();
+            crowded.changed(&crowd).for_each(|(m, code)| found[m] = code);
+            prop_assert_eq!(&found, &listed.chosen);
+            prop_assert_eq!((outcome.cost, outcome.shortfall), (plain.cost, plain.shortfall));
+            let close = |a: f64, b: f64| (a - b).abs() <= 1e-6 * plain.upper_bound.abs() + 1e-5;
+            prop_assert!(close(outcome.benefit, plain.benefit), "{} {}", outcome.benefit, plain.benefit);
+            prop_assert!(close(outcome.minimum_benefit, plain.minimum_benefit));
+            if plain.shortfall == 0 {
+                prop_assert!(close(outcome.upper_bound, plain.upper_bound), "{outcome:?} {plain:?}");
+            }
+            held = found;
+        }
     }
 }
 

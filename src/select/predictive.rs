@@ -1,10 +1,8 @@
 //! The predictive policy: the multiple-choice knapsack under the budget of this frame.
 
 use super::{Frame, Needs, Selector};
-use crate::frame::{
-    Candidate, Candidates, Cause, Certificate, NO_PLACE, OptionsError, PixelSum, SelectReport,
-};
-use crate::knapsack::{Crowd, Outcome, ProfileItem, Profiles, SharedClass, SharedKnapsack};
+use crate::frame::{Candidate, Candidates, Cause, Certificate, OptionsError, PixelSum, SelectReport};
+use crate::knapsack::{Crowd, OddClass, Outcome, ProfileItem, SharedClass, SharedKnapsack};
 use crate::rate::{Stages, TableRates, cost_us};
 use crate::scene::LevelRange;
 use crate::table::Level;
@@ -60,7 +58,7 @@ pub struct Predictive {
     knapsack: SharedKnapsack,
     hulls: Hulls,
     /// Candidates whose class is not simply that of a level of their table.
-    odd: Vec<Odd>,
+    odd: Vec<OddClass>,
     /// λ of the last frame in px² per µs.
     lambda: f64,
 }
@@ -72,13 +70,6 @@ const OWN: u32 = u32::MAX;
 /// level, the table's hull does not hold.
 fn has_own_hull(frame: &Frame<'_>, candidate: &Candidate) -> bool {
     frame.model.stages == Stages::Max || !candidate.allowed.coarsest.is_drawn()
-}
-
-/// The class of a candidate that is looked at closely before the others are.
-#[derive(Clone, Copy, Debug)]
-struct Odd {
-    candidate: u32,
-    class: SharedClass,
 }
 
 impl Predictive {
@@ -109,7 +100,7 @@ impl Predictive {
             let scale = if own { 1.0 } else { candidate.cost_scale };
             let stay = self.options.price(candidates.previous[i], candidates.age_ms[i]);
             let class = SharedClass { profile, weight: candidate.weight, scale, stay, current: 0 };
-            self.odd.push(Odd { candidate: i as u32, class });
+            self.odd.push(OddClass { at: i as u32, class });
         }
         self.make_own_hulls(frame);
         ceil_ticks(frame.model.pixel_us * self.hulls.ticks_per_us * pixels.px2())
@@ -117,8 +108,8 @@ impl Predictive {
 
     /// Makes the hulls that are not shared, after all that are, and finds what is held.
     fn make_own_hulls(&mut self, frame: &Frame<'_>) {
-        for Odd { candidate, class } in &mut self.odd {
-            let i = *candidate as usize;
+        for OddClass { at, class } in &mut self.odd {
+            let i = *at as usize;
             if class.profile == OWN {
                 class.profile = self.hulls.own(frame, &frame.candidate(i), &mut self.knapsack);
             }
@@ -127,21 +118,15 @@ impl Predictive {
         }
     }
 
-    fn solve(&mut self, frame: &Frame<'_>, budget: u64, ease: u64) -> Outcome {
-        let Self { options, knapsack, odd, .. } = self;
-        let candidates = frame.candidates;
-        let class = |profiles: &Profiles, i: usize| match candidates.place[i] {
-            NO_PLACE => odd[odd.partition_point(|odd| (odd.candidate as usize) < i)].class,
-            place => {
-                let stay = options.price(candidates.previous[i], candidates.age_ms[i]);
-                profiles.class_at(place, candidates.weight[i], stay)
-            }
-        };
-        let Candidates { weight, place, census, .. } = candidates;
-        let crowd = Crowd { weight, place, census, class };
-        let key = |i| frame.key(i);
-        let near = knapsack.solve_crowd(&crowd, budget, ease, key);
-        near.unwrap_or_else(|| knapsack.solve_all(&crowd, budget, ease, key))
+    fn solve(&mut self, frame: &Frame<'_>, budget: u64, ease: u64, levels: &mut [Level]) -> Outcome {
+        let Candidates { weight, place, census, previous, age_ms, .. } = frame.candidates;
+        let stay = |i: usize| self.options.price(previous[i], age_ms[i]);
+        let crowd = Crowd { weight, place, census, odd: &self.odd, stay };
+        let outcome = self.knapsack.solve_crowd(&crowd, budget, ease, |i| frame.key(i));
+        for (i, item) in self.knapsack.changed(&crowd) {
+            levels[i] = Level(item);
+        }
+        outcome
     }
 
     fn report(&self, outcome: &Outcome, fixed: u64, over: u64) -> SelectReport {
@@ -175,10 +160,7 @@ impl Selector for Predictive {
         let over = fixed.saturating_sub(budget);
         let ease = (budget as f64 * (1.0 - self.options.ease)) as u64;
         let free = |ticks: u64| ticks.saturating_sub(fixed);
-        let outcome = self.solve(frame, free(budget), free(ease));
-        for (i, item) in self.knapsack.changed() {
-            levels[i] = Level(item);
-        }
+        let outcome = self.solve(frame, free(budget), free(ease), levels);
         self.knapsack.profiles.truncate(self.hulls.shared_count as usize);
         self.lambda = outcome.lambda * self.hulls.ticks_per_us;
         self.report(&outcome, fixed, over)

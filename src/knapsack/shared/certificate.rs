@@ -5,7 +5,7 @@
 
 use super::SharedClass;
 use super::class::{Class, reach};
-use super::crowd::Settled;
+use super::crowd::Aside;
 use super::profiles::FRACTION_BITS;
 
 /// How good a choice is. Costs are in ticks.
@@ -34,18 +34,19 @@ pub struct Outcome {
 impl Outcome {
     /// (bound − benefit) ÷ (bound − benefit of the cheapest choice), of the plain benefit.
     pub fn gap(&self) -> f64 {
-        relative_gap(self.upper_bound, self.benefit, self.minimum_benefit)
+        let attainable = self.upper_bound - self.minimum_benefit;
+        if attainable > 0.0 { ((self.upper_bound - self.benefit) / attainable).clamp(0.0, 1.0) } else { 0.0 }
     }
 
-    /// The same of the priced benefit, which is what the choice maximises.
+    /// (priced bound − priced benefit) ÷ what [`Outcome::gap`] divides by.
     pub fn priced_gap(&self) -> f64 {
-        relative_gap(self.priced_bound, self.priced_benefit, self.minimum_benefit)
+        let attainable = self.upper_bound - self.minimum_benefit;
+        if attainable > 0.0 {
+            ((self.priced_bound - self.priced_benefit) / attainable).clamp(0.0, 1.0)
+        } else {
+            0.0
+        }
     }
-}
-
-fn relative_gap(bound: f64, benefit: f64, least: f64) -> f64 {
-    let attainable = bound - least;
-    if attainable > 0.0 { ((bound - benefit) / attainable).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// The sums behind an [`Outcome`], in any order of classes.
@@ -139,35 +140,39 @@ impl Sums {
         self.priced_bound.add(class, weight, best);
     }
 
-    /// What the sums and those of the settled classes come to, which are at the best position for λ, priced or not. The
-    /// price of their switching is left out on both sides.
+    /// What the sums and those of the classes set aside come to. The price of switching of the latter is left out on both
+    /// sides: they are at the best position for λ with it.
     ///
     /// Bounds are widened by what rounding can hide: two units per class for weights and premiums, two ticks per class
     /// for scaled costs, the last binary digit of every value, doubled where switching is priced, and the last places of
     /// the products.
-    pub fn outcome(&self, budget: u64, settled: &Settled) -> Outcome {
+    pub fn outcome(&self, budget: u64, aside: &Aside) -> Outcome {
         let lambda = f64::from(self.lambda);
         let digits = 2.0 * self.weight as f64 / ((1u64 << FRACTION_BITS) as f64 * self.unit);
-        let [value, least] = settled.benefit();
-        let settled_hidden = 2.0 * (settled.hidden() + settled.classes as f64 * lambda);
-        let hidden = self.classes as f64 * 2.0 * (lambda + 1.0 / self.unit) + digits + settled_hidden;
-        let bound = |benefit: f64, cost: u64| {
-            let (benefit, cost) = (benefit + value, cost.saturating_add(settled.held));
-            let unspent = lambda * (budget as f64 - cost as f64);
-            let widest = benefit.abs() + lambda * (budget as f64 + cost as f64);
+        let [value, least, hover_value] = [aside.benefit.value, aside.benefit.least, aside.hover_value]
+            .map(|units| units as f64 * aside.benefit.unit);
+        let hidden = self.classes as f64 * 2.0 * (lambda + 1.0 / self.unit)
+            + digits
+            + 2.0 * (aside.hidden() + aside.classes as f64 * lambda);
+        let bound = |benefit: f64, cost: f64| {
+            let (benefit, cost) = (benefit + value, cost + aside.cost as f64);
+            let unspent = lambda * (budget as f64 - cost);
+            let widest = benefit.abs() + lambda * (budget as f64 + cost.abs());
             benefit + unspent + hidden + widest * 1e-14
         };
+        let plain_best = self.bound.worth.value(self.unit) + hover_value;
+        let plain_cost = self.bound.cost as f64 + aside.hover_cost as f64;
         let benefit = self.benefit.value(self.unit) + value;
         let priced_benefit = benefit + self.premium as f64 / self.unit;
         let priced_best = self.priced_bound.worth.value(self.unit) + self.bound_premium as f64 / self.unit;
         Outcome {
-            cost: self.cost.saturating_add(settled.held),
+            cost: self.cost.saturating_add(aside.cost),
             shortfall: 0,
             benefit,
             minimum_benefit: self.minimum.value(self.unit) + least,
-            upper_bound: bound(self.bound.worth.value(self.unit), self.bound.cost).max(benefit),
+            upper_bound: bound(plain_best, plain_cost).max(benefit),
             priced_benefit,
-            priced_bound: bound(priced_best, self.priced_bound.cost).max(priced_benefit),
+            priced_bound: bound(priced_best, self.priced_bound.cost as f64).max(priced_benefit),
             lambda,
             steps: 0,
         }

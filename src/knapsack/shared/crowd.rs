@@ -1,250 +1,428 @@
 //! Classes by the hundred thousand, nearly all of which stay where they are.
 //!
-//! From one call to the next nearly every class holds its item whatever λ in the bracket turns out to be. Such a class is
-//! *settled*. Whether it is takes one look at its weight: a class of weight w holds position p of its hull while
-//! λ · (1 / slope into p) ≤ w < λ · (1 / slope out of p). The reciprocals of all items of all profiles are kept in a table,
-//! so that sifting the crowd is a loop without branches over two columns. All that the sums need of settled classes is
-//! how many hold each item, and what they weigh.
+//! Before anything else it is clear from counts alone whether not even the cheapest choice fits, or everything does, or λ
+//! has to be found. Given a bracket of λ, [`sift`] finds the classes that hold their item whatever λ in it turns out to be.
+//! Of the others most go to one position whatever λ is; they are decided, and set aside with the settled ones as sums. Only
+//! the rest are listed as classes, and solved as a list is. The answer is that of the list of all classes.
 
-use glam::{Mat4, Vec4};
+use super::certificate::Sums;
+use super::class::{Class, reach};
+use super::sift::{Units, sift};
+use super::{Critical, Outcome, Profiles, SharedClass, SharedKnapsack, Survey};
 
-use super::profiles::Profiles;
-
-/// The classes of a call, column by column, and how to look at one more closely.
+/// The classes of a call, column by column.
 pub struct Crowd<'a, F> {
     /// Factor on the profile's values, finite and ≥ 0.
     pub weight: &'a [f32],
     /// The number of the item that a class of scale 1 holds, among the items of all profiles in the order in which they
-    /// were pushed. Any other number for a class that holds none, or has another scale.
+    /// were pushed. Any number beyond the census for an odd class.
     pub place: &'a [u32],
     /// How many classes hold each item.
     pub census: &'a [u32],
-    /// The class in full: `Fn(&Profiles, usize) -> SharedClass`.
-    pub class: F,
+    /// The others in full, ascending.
+    pub odd: &'a [OddClass],
+    /// Price of switching of a class, in 0…1 (exclusive).
+    pub stay: F,
 }
 
-/// When a class holds an item, and what that is worth to a class of weight 1. A row of four numbers, so that four classes
-/// are turned into columns by a transposition:
-/// - *keep*: the class keeps the step to the item while its weight is at least λ times this;
-/// - *rest*: it takes no further step while its weight is below λ times this;
-/// - *value* of the item, and of the cheapest item of its profile.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Hold(Vec4);
+/// A class of a crowd that holds no item, or has a scale or a profile of its own.
+#[derive(Clone, Copy, Debug)]
+pub struct OddClass {
+    /// Which one it is.
+    pub at: u32,
+    /// The class in full.
+    pub class: SharedClass,
+}
 
-/// Reciprocals are moved outwards by more than the three roundings of single precision that slopes and comparisons take.
-const OUTWARDS: f32 = 1.0e-6;
-
-impl Hold {
-    /// Never settled.
-    pub const OPEN: Self = Self(Vec4::new(f32::INFINITY, 0.0, 0.0, 0.0));
-
-    /// Of a position by the slopes of the steps to it and from it, where there are such.
-    pub fn new(into: Option<f32>, out: Option<f32>, value: f32, least: f32) -> Self {
-        let keep = into.map_or(0.0, |slope| 1.0 / slope * (1.0 + OUTWARDS));
-        let rest = out.map_or(f32::INFINITY, |slope| 1.0 / slope * (1.0 - OUTWARDS));
-        Self(Vec4::new(keep, rest, value, least))
+impl<F: Fn(usize) -> f32> Crowd<'_, F> {
+    fn holds_item(&self, i: usize) -> bool {
+        (self.place[i] as usize) < self.census.len()
     }
 
-    fn settles(self, weight: f32, [low, high]: [f32; 2]) -> bool {
-        (weight >= high * self.0.x) & (weight < low * self.0.y)
+    fn class(&self, profiles: &Profiles, i: usize) -> SharedClass {
+        if self.holds_item(i) {
+            return profiles.class_at(self.place[i], self.weight[i], (self.stay)(i));
+        }
+        self.odd[self.odd.partition_point(|odd| (odd.at as usize) < i)].class
     }
 }
 
-/// What settled classes add up to. Costs are in ticks.
+/// What all classes add up to, in ticks, wherever λ is.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Settled {
+struct Totals {
+    cheapest: u64,
+    held: u64,
+    best: u64,
+    /// The most that one class can cost beyond its cheapest position.
+    widest: u64,
+}
+
+impl Totals {
+    fn of<F>(profiles: &Profiles, crowd: &Crowd<'_, F>) -> Self {
+        let mut totals = Self::default();
+        for (item, &count) in crowd.census.iter().enumerate().filter(|&(_, &count)| count > 0) {
+            totals.add(profiles.item_ticks(item), u64::from(count));
+        }
+        for odd in crowd.odd {
+            let class = Class::new(profiles, &odd.class);
+            totals.add([0, class.held(), class.last()].map(|position| class.cost(position)), 1);
+        }
+        totals
+    }
+
+    fn add(&mut self, [cheapest, held, best]: [u64; 3], times: u64) {
+        self.cheapest = self.cheapest.saturating_add(cheapest.saturating_mul(times));
+        self.held = self.held.saturating_add(held.saturating_mul(times));
+        self.best = self.best.saturating_add(best.saturating_mul(times));
+        self.widest = self.widest.max(best - cheapest);
+    }
+}
+
+/// What is known of the classes that are not listed.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Aside {
     /// How many there are.
     pub classes: u64,
-    /// All of them at their cheapest position, where they are, and at their best.
-    pub cheapest: u64,
-    pub held: u64,
-    pub best: u64,
-    /// The most that one class can cost beyond its cheapest position.
-    pub widest: u64,
-    /// Benefit where they are, and at the cheapest positions, in units.
-    pub value: i128,
-    pub least: i128,
-    /// One unit of benefit.
-    pub unit: f64,
+    /// Cost of where they are going, in ticks.
+    pub cost: u64,
+    /// Benefit of where they are going.
+    pub benefit: Units,
+    /// Those that go elsewhere than they are.
+    moved: Vec<Decided>,
+    /// Those that stay for the price of switching alone: without it they would be elsewhere for some λ of the bracket.
+    hovering: Vec<Decided>,
+    /// What would be gained by moving them to their best positions, and what that would cost.
+    pub hover_value: i128,
+    pub hover_cost: i128,
+    /// Bit per class: it is listed, or has moved.
+    marked: Vec<u64>,
 }
 
-impl Settled {
-    /// Everyone who holds an item, as if settled.
-    pub fn all(profiles: &Profiles, census: &[u32]) -> Self {
-        let mut sums = Self::default();
-        for (item, &count) in census.iter().enumerate().filter(|&(_, &count)| count > 0) {
-            let [cheapest, held, best] = profiles.item_ticks(item);
-            let times = u64::from(count);
-            sums.classes += times;
-            sums.cheapest = sums.cheapest.saturating_add(cheapest.saturating_mul(times));
-            sums.held = sums.held.saturating_add(held.saturating_mul(times));
-            sums.best = sums.best.saturating_add(best.saturating_mul(times));
-            sums.widest = sums.widest.max(best - cheapest);
-        }
-        sums
+/// A class that goes to a position whatever λ is.
+#[derive(Clone, Copy, Debug)]
+struct Decided {
+    at: u32,
+    position: u8,
+    /// It has been listed after all.
+    listed: bool,
+}
+
+impl Aside {
+    /// Nobody.
+    pub fn clear(&mut self) {
+        (self.classes, self.cost, self.benefit) = (0, 0, Units::default());
+        (self.hover_value, self.hover_cost) = (0, 0);
+        self.moved.clear();
+        self.hovering.clear();
     }
 
-    /// Takes a class that holds `item` out of counts and costs.
-    pub fn dismiss(&mut self, profiles: &Profiles, item: usize) {
-        let [cheapest, held, best] = profiles.item_ticks(item);
+    fn mark(&mut self, i: usize) {
+        self.marked[i / 64] |= 1 << (i % 64);
+    }
+
+    fn is_marked(&self, i: usize) -> bool {
+        self.marked[i / 64] & (1 << (i % 64)) != 0
+    }
+
+    /// Sets a class aside that goes to `position`.
+    fn add(&mut self, class: &Class<'_>, position: u8) {
+        let value = |p: u8| self.benefit.of(class.weight, class.positions[usize::from(p)].value);
+        let (here, least) = (value(position), value(0));
+        self.benefit.value += here;
+        self.benefit.least += least;
+        self.cost += class.cost(position);
+        self.classes += 1;
+    }
+
+    /// Undoes [`Aside::add`].
+    fn remove(&mut self, class: &Class<'_>, position: u8) {
+        let value = |p: u8| self.benefit.of(class.weight, class.positions[usize::from(p)].value);
+        let (here, least) = (value(position), value(0));
+        self.benefit.value -= here;
+        self.benefit.least -= least;
+        self.cost -= class.cost(position);
         self.classes -= 1;
-        self.cheapest -= cheapest;
-        self.held -= held;
-        self.best -= best;
     }
 
-    /// Takes out of the benefit what a class of this weight at this item was counted with.
-    pub fn devalue(&mut self, weight: f32, hold: &Hold) {
-        let rounding = rounding(self.unit);
-        let units = |value: f32| ((product(weight, value) + rounding - rounding) / self.unit) as i128;
-        self.value -= units(hold.0.z);
-        self.least -= units(hold.0.w);
-    }
-
-    /// Benefit where they are, and at the cheapest positions.
-    pub fn benefit(&self) -> [f64; 2] {
-        [self.value as f64 * self.unit, self.least as f64 * self.unit]
-    }
-
-    /// How much rounding may hide of either.
+    /// How much rounding may hide in the benefit.
     pub fn hidden(&self) -> f64 {
-        self.classes as f64 * self.unit
+        (self.classes + 2 * self.hovering.len() as u64) as f64 * self.benefit.unit
     }
-}
 
-/// Classes that are looked at together.
-const LANES: usize = 16;
-
-/// Chunks whose benefit is summed in double precision before it is carried over: so many numbers of 40 bits add up exactly
-/// in 52.
-const CARRY_EVERY: usize = 1 << 12;
-const TERM_BITS: i32 = 40;
-
-/// Sums of benefit, lane by lane.
-#[derive(Clone, Copy)]
-struct Lanes {
-    value: [f64; LANES],
-    least: [f64; LANES],
-}
-
-/// Finds the classes that are not settled for every λ of the bracket, and tells `open` of each. Adds the benefit of those
-/// that are to `settled`, whose unit follows from the heaviest class. The last of `holds` is open.
-pub(super) fn sift(
-    weight: &[f32],
-    place: &[u32],
-    holds: &[Hold],
-    bracket: [f32; 2],
-    settled: &mut Settled,
-    mut open: impl FnMut(usize),
-) {
-    settled.unit = unit_for(heaviest(weight));
-    let rounding = rounding(settled.unit);
-    let mut sums = Lanes { value: [0.0; LANES], least: [0.0; LANES] };
-    let mut told = |at: usize, mut opened: u16| {
-        while opened != 0 {
-            open(at * LANES + opened.trailing_zeros() as usize);
-            opened &= opened - 1;
-        }
-    };
-    let (weights, last_weights) = weight.as_chunks::<LANES>();
-    let (places, last_places) = place.as_chunks::<LANES>();
-    for (at, (weight, place)) in weights.iter().zip(places).enumerate() {
-        told(at, !sift_lanes(weight, place, holds, bracket, rounding, &mut sums));
-        if at % CARRY_EVERY == CARRY_EVERY - 1 {
-            carry(&mut sums, settled);
-        }
-    }
-    let (mut weight, mut place) = ([0.0; LANES], [u32::MAX; LANES]);
-    weight[..last_weights.len()].copy_from_slice(last_weights);
-    place[..last_places.len()].copy_from_slice(last_places);
-    let opened = !sift_lanes(&weight, &place, holds, bracket, rounding, &mut sums);
-    told(weights.len(), opened & ((1u32 << last_weights.len()) - 1) as u16);
-    carry(&mut sums, settled);
-}
-
-/// Finds the settled classes that hold an item with a further step whose slope is at least `low`, and tells `open` of each.
-/// Slopes are those of the profile; steps of lower priced slopes may be among them.
-pub(super) fn openings<F>(
-    crowd: &Crowd<'_, F>,
-    holds: &[Hold],
-    bracket: [f32; 2],
-    low: f32,
-    mut open: impl FnMut(usize),
-) {
-    for (i, (&weight, &place)) in crowd.weight.iter().zip(crowd.place).enumerate() {
-        let Some(hold) = holds.get(place as usize) else { continue };
-        if hold.settles(weight, bracket) & (weight >= low * hold.0.y) {
-            open(i);
+    /// Adds up what the price of switching keeps the hovering classes from at λ.
+    pub fn weigh_hovering<F: Fn(usize) -> f32>(
+        &mut self,
+        profiles: &Profiles,
+        crowd: &Crowd<'_, F>,
+        lambda: f32,
+    ) {
+        (self.hover_value, self.hover_cost) = (0, 0);
+        for &Decided { at, position, .. } in self.hovering.iter().filter(|h| !h.listed) {
+            let class = crowd.class(profiles, at as usize);
+            let class = Class::new(profiles, &class);
+            let best = reach(position, lambda, |p| class.plain_slope(p));
+            let value = |p: u8| self.benefit.of(class.weight, class.positions[usize::from(p)].value);
+            self.hover_value += value(best) - value(position);
+            self.hover_cost += i128::from(class.cost(best)) - i128::from(class.cost(position));
         }
     }
 }
 
-/// One chunk: which lanes are settled; their benefit goes into the sums.
-fn sift_lanes(
-    weight: &[f32; LANES],
-    place: &[u32; LANES],
-    holds: &[Hold],
-    [low, high]: [f32; 2],
-    rounding: f64,
-    sums: &mut Lanes,
-) -> u16 {
-    let [keep, rest, value, least] = columns(place, holds);
-    let mut stays = [0; LANES];
-    for lane in 0..LANES {
-        let w = weight[lane];
-        let is_settled = (w >= high * keep[lane]) & (w < low * rest[lane]);
-        stays[lane] = u32::from(is_settled);
-        let counted = if is_settled { w } else { 0.0 };
-        sums.value[lane] += product(counted, value[lane]) + rounding - rounding;
-        sums.least[lane] += product(counted, least[lane]) + rounding - rounding;
-    }
-    stays.iter().enumerate().fold(0, |mask, (lane, &bit)| mask | bit << lane) as u16
-}
+/// Brackets that are tried before the classes are listed one and all.
+const TRIES: usize = 6;
 
-/// The rows of a chunk's items, as columns.
-fn columns(place: &[u32; LANES], holds: &[Hold]) -> [[f32; LANES]; 4] {
-    let last = holds.len() - 1;
-    let row = |place: u32| holds[(place as usize).min(last)].0;
-    let mut columns = [[0.0; LANES]; 4];
-    for (quad, places) in place.as_chunks::<4>().0.iter().enumerate() {
-        let [a, b, c, d] = places.map(row);
-        let turned = Mat4::from_cols(a, b, c, d).transpose();
-        for (column, part) in
-            columns.iter_mut().zip([turned.x_axis, turned.y_axis, turned.z_axis, turned.w_axis])
-        {
-            column[quad * 4..][..4].copy_from_slice(&part.to_array());
+/// How much farther a bracket reaches than the one that λ turned out to be beyond.
+const REACH: f32 = 0.15;
+
+/// A sample is so large at least.
+const SAMPLE: usize = 8192;
+
+impl SharedKnapsack {
+    /// [`SharedKnapsack::solve`] of a crowd. Afterwards [`SharedKnapsack::changed`] lists the classes that were looked at
+    /// closely; all others hold what they held. `key` is given places in the crowd.
+    ///
+    /// Time: O(items) and a pass over the columns where λ is near the last one, a few passes where it is not. Where one
+    /// item takes a large part of the budget, or the gap is large, all classes are listed.
+    pub fn solve_crowd<F: Fn(usize) -> f32>(
+        &mut self,
+        crowd: &Crowd<'_, F>,
+        budget: u64,
+        ease: u64,
+        key: impl Fn(usize) -> u128,
+    ) -> Outcome {
+        let shared = self.profiles.len();
+        let ease = ease.min(budget);
+        let outcome = match self.solve_aside(crowd, budget, ease, &key) {
+            Some(outcome) => outcome,
+            None => {
+                self.list_all(crowd);
+                self.choose(budget, ease, &key)
+            }
+        };
+        self.note_chosen();
+        self.profiles.truncate(shared);
+        outcome
+    }
+
+    /// The classes of a crowd that were looked at closely, and the codes of their chosen items.
+    pub fn changed<'a, F: Fn(usize) -> f32>(
+        &'a self,
+        crowd: &'a Crowd<'_, F>,
+    ) -> impl Iterator<Item = (usize, u8)> + 'a {
+        let moved = self.aside.moved.iter().filter(|m| !m.listed).map(|moved| {
+            let class = crowd.class(&self.profiles, moved.at as usize);
+            (moved.at as usize, self.profiles.positions(class.profile)[usize::from(moved.position)].item)
+        });
+        let listed = self.owners.iter().zip(&self.chosen).map(|(&owner, &item)| (owner as usize, item));
+        moved.chain(listed)
+    }
+
+    /// The answer, with few classes listed; `None` where that is not enough to be sure of it.
+    fn solve_aside<F: Fn(usize) -> f32>(
+        &mut self,
+        crowd: &Crowd<'_, F>,
+        budget: u64,
+        ease: u64,
+        key: &impl Fn(usize) -> u128,
+    ) -> Option<Outcome> {
+        let totals = Totals::of(&self.profiles, crowd);
+        if totals.cheapest > budget {
+            self.sift(crowd, [f32::MAX; 2]);
+            let shortfall = totals.cheapest - budget;
+            return Some(Outcome { shortfall, ..self.sum_up(crowd, 0.0).outcome(budget, &self.aside) });
+        }
+        let target = totals.held.clamp(ease, budget);
+        if totals.best <= target {
+            self.sift(crowd, [f32::MIN_POSITIVE; 2]);
+            return Some(self.sum_up(crowd, 0.0).outcome(budget, &self.aside));
+        }
+        if totals.widest > target - totals.cheapest {
+            return None;
+        }
+        let (survey, bracket) = self.bracket_crowd(crowd, target)?;
+        let critical = self.greedy_aside(crowd, survey, target, bracket, key);
+        self.bracket.lambda = critical.lambda;
+        let sums = self.sum_up(crowd, critical.lambda);
+        let is_near = sums.outcome(target, &self.aside).priced_gap() <= super::RIVAL_GAP;
+        is_near.then(|| Outcome { steps: critical.steps, ..sums.outcome(budget, &self.aside) })
+    }
+
+    /// Lists every class.
+    fn list_all<F: Fn(usize) -> f32>(&mut self, crowd: &Crowd<'_, F>) {
+        let Self { profiles, classes, owners, aside, .. } = self;
+        aside.clear();
+        classes.clear();
+        classes.extend((0..crowd.weight.len()).map(|i| crowd.class(profiles, i)));
+        owners.clear();
+        owners.extend(0..crowd.weight.len() as u32);
+    }
+
+    /// A bracket that the budget ends in, and the survey of the classes that it leaves to be listed: around the last λ, or
+    /// where a sample of the crowd says.
+    fn bracket_crowd<F: Fn(usize) -> f32>(
+        &mut self,
+        crowd: &Crowd<'_, F>,
+        target: u64,
+    ) -> Option<(Survey, [f32; 2])> {
+        let is_warm = self.bracket.lambda > 0.0;
+        let mut bracket = if is_warm { self.warm_bracket() } else { self.sampled_bracket(crowd, target) };
+        for attempt in 0..TRIES {
+            let survey = self.sift(crowd, bracket);
+            if survey.above <= target && target < survey.down_to {
+                self.bracket.narrow();
+                return Some((survey, bracket));
+            }
+            self.bracket.widen();
+            let [low, high] = bracket;
+            bracket = if attempt == 0 && is_warm {
+                self.sampled_bracket(crowd, target)
+            } else if survey.above > target {
+                [high, high * (1.0 + REACH)]
+            } else {
+                [(low * (1.0 - REACH)).max(f32::MIN_POSITIVE), low]
+            };
+        }
+        None
+    }
+
+    /// The bracket that a sample of the crowd suggests.
+    fn sampled_bracket<F: Fn(usize) -> f32>(&mut self, crowd: &Crowd<'_, F>, target: u64) -> [f32; 2] {
+        let every = (crowd.weight.len() / SAMPLE).max(1);
+        let Self { profiles, classes, .. } = self;
+        classes.clear();
+        classes.extend((0..crowd.weight.len()).step_by(every).map(|i| crowd.class(profiles, i)));
+        let share = classes.len() as f64 / crowd.weight.len() as f64;
+        let [low, high] = self.cold_bracket((target as f64 * share) as u64, None);
+        [(low * 0.98).max(f32::MIN_POSITIVE), high * 1.02]
+    }
+
+    /// Sets aside what is settled or decided for every λ of the bracket, lists the rest, and surveys it.
+    fn sift<F: Fn(usize) -> f32>(&mut self, crowd: &Crowd<'_, F>, bracket: [f32; 2]) -> Survey {
+        let [low, high] = bracket;
+        let Self { profiles, classes, owners, aside, opened, .. } = self;
+        classes.clear();
+        owners.clear();
+        opened.clear();
+        aside.clear();
+        aside.marked.clear();
+        aside.marked.resize(crowd.weight.len().div_ceil(64), 0);
+        for (item, &count) in crowd.census.iter().enumerate() {
+            aside.classes += u64::from(count);
+            aside.cost += profiles.item_ticks(item)[1] * u64::from(count);
+        }
+        aside.benefit = sift(crowd.weight, crowd.place, profiles.holds(), bracket, |i| opened.push(i as u32));
+        for &i in opened.iter() {
+            let shared = crowd.class(profiles, i as usize);
+            let class = Class::new(profiles, &shared);
+            let above = class.reach(class.held(), high);
+            let holds_item = crowd.holds_item(i as usize);
+            if holds_item {
+                aside.classes -= 1;
+                aside.cost -= class.cost(class.held());
+            }
+            if !holds_item || class.reach(above, low) != above {
+                classes.push(shared);
+                owners.push(i);
+                aside.mark(i as usize);
+                continue;
+            }
+            aside.add(&class, above);
+            let decided = Decided { at: i, position: above, listed: false };
+            // A held item that is no corner of its hull is not held on.
+            if class.positions[usize::from(above)].item != profiles.code(crowd.place[i as usize]) {
+                aside.mark(i as usize);
+                aside.moved.push(decided);
+            }
+            if class.plain_slope(above) >= low || above > 0 && class.plain_slope(above - 1) < high {
+                aside.hovering.push(decided);
+            }
+        }
+        self.survey(bracket, None)
+    }
+
+    /// The greedy of a crowd, the budget being inside the bracket.
+    fn greedy_aside<F: Fn(usize) -> f32>(
+        &mut self,
+        crowd: &Crowd<'_, F>,
+        survey: Survey,
+        budget: u64,
+        bracket: [f32; 2],
+        key: &impl Fn(usize) -> u128,
+    ) -> Critical {
+        let mut critical = Critical::default();
+        let mut room = budget - survey.above;
+        self.take(budget, &mut room, &mut critical, key);
+        critical.descend(survey.low, room, budget);
+        let mut above = bracket[0];
+        while critical.goes_on() {
+            let low = critical.low();
+            self.list_openings(crowd, [low, above], room);
+            self.gather(low, room);
+            self.take(budget, &mut room, &mut critical, key);
+            critical.descend(low.next_down(), room, budget);
+            above = low;
+        }
+        critical
+    }
+
+    /// Lists the classes set aside whose next step has a slope of at least `low`, below `above`, and fits.
+    fn list_openings<F: Fn(usize) -> f32>(
+        &mut self,
+        crowd: &Crowd<'_, F>,
+        [low, above]: [f32; 2],
+        room: u64,
+    ) {
+        let is_opening = |class: &Class<'_>, position: u8| {
+            let slope = class.slope(position);
+            let step = || class.cost(position + 1) - class.cost(position);
+            slope >= low && slope < above && step() <= room
+        };
+        let mut found = std::mem::take(&mut self.opened);
+        found.clear();
+        let holds = self.profiles.holds();
+        let goes_on = |i: &usize| {
+            let hold = holds.get(crowd.place[*i] as usize);
+            hold.is_some_and(|hold| hold.may_go_on(crowd.weight[*i], low)) && !self.aside.is_marked(*i)
+        };
+        found.extend((0..crowd.weight.len()).filter(goes_on).map(|i| i as u32));
+        for &i in &found {
+            let shared = crowd.class(&self.profiles, i as usize);
+            let class = Class::new(&self.profiles, &shared);
+            if is_opening(&class, class.held()) {
+                self.aside.remove(&class, class.held());
+                let hovering = self.aside.hovering.binary_search_by_key(&i, |h| h.at);
+                hovering.into_iter().for_each(|at| self.aside.hovering[at].listed = true);
+                let position = class.held();
+                self.list(i, shared, position);
+            }
+        }
+        self.opened = found;
+        for at in 0..self.aside.moved.len() {
+            let Decided { at: i, position, listed } = self.aside.moved[at];
+            let shared = crowd.class(&self.profiles, i as usize);
+            let class = Class::new(&self.profiles, &shared);
+            if !listed && is_opening(&class, position) {
+                self.aside.remove(&class, position);
+                self.aside.moved[at].listed = true;
+                let hovering = self.aside.hovering.binary_search_by_key(&i, |h| h.at);
+                hovering.into_iter().for_each(|at| self.aside.hovering[at].listed = true);
+                self.list(i, shared, position);
+            }
         }
     }
-    columns
-}
 
-fn product(weight: f32, value: f32) -> f64 {
-    f64::from(weight) * f64::from(value)
-}
-
-fn carry(sums: &mut Lanes, settled: &mut Settled) {
-    settled.value += sums.value.iter().map(|sum| (sum / settled.unit) as i128).sum::<i128>();
-    settled.least += sums.least.iter().map(|sum| (sum / settled.unit) as i128).sum::<i128>();
-    *sums = Lanes { value: [0.0; LANES], least: [0.0; LANES] };
-}
-
-/// A power of two of which the heaviest class has fewer than 2⁴⁰.
-fn unit_for(heaviest: f32) -> f64 {
-    let exponent = if heaviest > 0.0 { (heaviest.to_bits() >> 23) as i32 - 126 } else { 0 };
-    f64::from_bits(((1023 + exponent - TERM_BITS) as u64) << 52)
-}
-
-/// Adding and subtracting this rounds to whole units.
-fn rounding(unit: f64) -> f64 {
-    unit * 1.5 * (1u64 << 52) as f64
-}
-
-fn heaviest(weight: &[f32]) -> f32 {
-    let mut most = [0.0f32; LANES];
-    for chunk in weight.chunks(LANES) {
-        for (most, &w) in most.iter_mut().zip(chunk) {
-            *most = if w > *most { w } else { *most };
-        }
+    /// Lists a class that is at a position.
+    fn list(&mut self, i: u32, class: SharedClass, position: u8) {
+        self.classes.push(class);
+        self.owners.push(i);
+        self.choice.push(position);
+        self.blocked.push(false);
+        self.aside.mark(i as usize);
     }
-    most.into_iter().fold(0.0, f32::max)
+
+    /// Sums up the choice and the classes set aside, and what is possible at λ.
+    fn sum_up<F: Fn(usize) -> f32>(&mut self, crowd: &Crowd<'_, F>, lambda: f32) -> Sums {
+        self.aside.weigh_hovering(&self.profiles, crowd, lambda);
+        self.certify(lambda)
+    }
 }

@@ -17,14 +17,15 @@ mod certificate;
 mod class;
 mod crowd;
 mod profiles;
+mod sift;
 
 pub use certificate::Outcome;
-pub use crowd::Crowd;
+pub use crowd::{Crowd, OddClass};
 pub use profiles::{Position, ProfileItem, Profiles};
 
 use certificate::Sums;
 use class::{Class, scaled};
-use crowd::{Settled, sift};
+use crowd::Aside;
 use profiles::position_at;
 
 /// One class of a call.
@@ -56,9 +57,11 @@ pub struct SharedKnapsack {
     bracket: Bracket,
     undecided: Vec<Undecided>,
     blocked: Vec<bool>,
-    /// Of a crowd: which class of it each of `classes` is, and what those that are not among them add up to.
+    /// Of a crowd: which class of it each of `classes` is, and what those that are not among them add up to. Of a list:
+    /// nothing.
     owners: Vec<u32>,
-    settled: Settled,
+    aside: Aside,
+    opened: Vec<u32>,
     histogram: Vec<u64>,
     rival: Vec<u8>,
     affordable: Vec<ProfileItem>,
@@ -69,26 +72,12 @@ pub struct SharedKnapsack {
 struct Bracket {
     lambda: f32,
     width: f32,
-    last: Last,
 }
 
 impl Default for Bracket {
     fn default() -> Self {
-        Self { lambda: 0.0, width: *WIDTH.start(), last: Last::Nothing }
+        Self { lambda: 0.0, width: *WIDTH.start() }
     }
-}
-
-/// How the last call ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Last {
-    /// There was none.
-    Nothing,
-    /// Not even the cheapest choice was within the budget.
-    Cheapest,
-    /// The budget ended at λ.
-    Lambda,
-    /// Everything was within the budget.
-    Everything,
 }
 
 /// A step inside the bracket.
@@ -124,15 +113,6 @@ impl Survey {
         self.above = self.above.saturating_add(class.cost(above));
         self.down_to = self.down_to.saturating_add(class.cost(down_to));
     }
-
-    fn add_settled(&mut self, settled: &Settled) {
-        self.cheapest = self.cheapest.saturating_add(settled.cheapest);
-        self.best = self.best.saturating_add(settled.best);
-        self.widest = self.widest.max(settled.widest);
-        for sum in [&mut self.held, &mut self.above, &mut self.down_to] {
-            *sum = sum.saturating_add(settled.held);
-        }
-    }
 }
 
 /// A class held at a position, whatever its slope.
@@ -159,10 +139,15 @@ impl Critical {
         (self.lambda * FILL_WINDOWS[self.window]).max(f32::MIN_POSITIVE)
     }
 
+    /// Whether there is a step that does not fit, and room for others.
+    fn goes_on(&self) -> bool {
+        self.step.is_some() && !self.done
+    }
+
     /// Leaves the windows that end above `slope`, the last of them for good. It is done when too little of the budget is
     /// left at the end of any: whether it is depends on nothing but λ and the steps above, not on how they were found.
     fn descend(&mut self, slope: f32, room: u64, budget: u64) {
-        while self.step.is_some() && !self.done && self.low() > slope {
+        while self.goes_on() && self.low() > slope {
             self.done = room <= budget / FILL_ENOUGH || self.window + 1 == FILL_WINDOWS.len();
             self.window += usize::from(!self.done);
         }
@@ -205,75 +190,11 @@ impl SharedKnapsack {
     pub fn solve(&mut self, budget: u64, ease: u64, key: impl Fn(usize) -> u128) -> Outcome {
         let shared = self.profiles.len();
         self.owners.clear();
-        self.settled = Settled::default();
+        self.aside.clear();
         let outcome = self.choose(budget, ease.min(budget), &key);
         self.note_chosen();
         self.profiles.truncate(shared);
         outcome
-    }
-
-    /// [`SharedKnapsack::solve`] of a crowd, of which only the classes that are not settled are looked at one by one:
-    /// afterwards [`SharedKnapsack::changed`] lists those. `None` where that is not enough to be sure of the same answer:
-    /// where λ has moved out of its bracket, where an item takes a large part of the budget, or the gap is large. Then
-    /// there is nothing to read, and [`SharedKnapsack::solve`] has to be called.
-    ///
-    /// `key` is given places in the crowd. Time: two passes over the crowd's columns.
-    pub fn solve_crowd<F: Fn(&Profiles, usize) -> SharedClass>(
-        &mut self,
-        crowd: &Crowd<'_, F>,
-        budget: u64,
-        ease: u64,
-        key: impl Fn(usize) -> u128,
-    ) -> Option<Outcome> {
-        let bracket = self.crowd_bracket()?;
-        self.sift(crowd, bracket);
-        let survey = self.survey(bracket, None);
-        let ease = ease.min(budget);
-        let Survey { cheapest, best, held, widest, above, down_to, .. } = survey;
-        if cheapest > budget {
-            let all_cheapest = self.settled.held == self.settled.cheapest;
-            return all_cheapest.then(|| self.keep_cheapest(cheapest - budget, budget));
-        }
-        let target = held.clamp(ease, budget);
-        if best <= target {
-            let all_best = self.settled.held == self.settled.best;
-            return all_best.then(|| self.take_all(budget));
-        }
-        let is_safe = widest <= target - cheapest && above <= target && target < down_to;
-        if !is_safe {
-            self.bracket.widen();
-            return None;
-        }
-        self.bracket.narrow();
-        let critical = self.greedy_in(crowd, survey, target, bracket, &key);
-        self.bracket.end_at(critical.lambda);
-        let sums = self.certify(critical.lambda);
-        self.note_chosen();
-        let is_near = sums.outcome(target, &self.settled).priced_gap() <= RIVAL_GAP;
-        is_near.then(|| Outcome { steps: critical.steps, ..sums.outcome(budget, &self.settled) })
-    }
-
-    /// [`SharedKnapsack::solve`] of a crowd, every class of which is looked at: afterwards [`SharedKnapsack::changed`] lists
-    /// them all.
-    pub fn solve_all<F: Fn(&Profiles, usize) -> SharedClass>(
-        &mut self,
-        crowd: &Crowd<'_, F>,
-        budget: u64,
-        ease: u64,
-        key: impl Fn(usize) -> u128,
-    ) -> Outcome {
-        let Self { profiles, classes, .. } = self;
-        classes.clear();
-        classes.extend((0..crowd.weight.len()).map(|i| (crowd.class)(profiles, i)));
-        let outcome = self.solve(budget, ease, key);
-        self.owners.extend(0..crowd.weight.len() as u32);
-        outcome
-    }
-
-    /// The classes of a crowd that were looked at one by one, ascending but for the last ones, and the codes of their
-    /// chosen items. All others hold what they held.
-    pub fn changed(&self) -> impl Iterator<Item = (usize, u8)> {
-        self.owners.iter().zip(&self.chosen).map(|(&owner, &item)| (owner as usize, item))
     }
 
     /// Forgets the last λ: the next call starts from the histogram.
@@ -295,11 +216,11 @@ impl SharedKnapsack {
             survey = self.survey(self.warm_bracket(), None);
         }
         let critical = self.greedy(survey, target, None, key);
-        self.bracket.end_at(critical.lambda);
+        self.bracket.lambda = critical.lambda;
         let sums = self.certify(critical.lambda);
-        let outcome = Outcome { steps: critical.steps, ..sums.outcome(budget, &self.settled) };
+        let outcome = Outcome { steps: critical.steps, ..sums.outcome(budget, &self.aside) };
         match critical.step {
-            Some(step) if sums.outcome(target, &self.settled).priced_gap() > RIVAL_GAP => {
+            Some(step) if sums.outcome(target, &self.aside).priced_gap() > RIVAL_GAP => {
                 self.better_of(outcome, step, target, key)
             }
             _ => outcome,
@@ -309,19 +230,13 @@ impl SharedKnapsack {
     /// Nothing is affordable: every class at its cheapest position.
     fn keep_cheapest(&mut self, shortfall: u64, budget: u64) -> Outcome {
         self.choice.fill(0);
-        self.bracket.last = Last::Cheapest;
-        self.note_chosen();
-        Outcome { shortfall, ..self.certify(0.0).outcome(budget, &self.settled) }
+        Outcome { shortfall, ..self.certify(0.0).outcome(budget, &self.aside) }
     }
 
-    /// Everything is affordable: every class at its best position.
+    /// Everything is affordable: every class takes all steps that are worth anything.
     fn take_all(&mut self, budget: u64) -> Outcome {
-        for i in 0..self.classes.len() {
-            self.choice[i] = self.class(i).last();
-        }
-        self.bracket.last = Last::Everything;
-        self.note_chosen();
-        self.certify(0.0).outcome(budget, &self.settled)
+        self.survey([f32::MIN_POSITIVE; 2], None);
+        self.certify(0.0).outcome(budget, &self.aside)
     }
 
     /// Notes the items of the choice.
@@ -333,86 +248,6 @@ impl SharedKnapsack {
             .map(|(class, &position)| self.profiles.positions(class.profile)[usize::from(position)].item);
         self.chosen.clear();
         self.chosen.extend(items);
-    }
-
-    /// Puts the classes of a crowd that are not settled in the bracket into `classes`, and adds up the others.
-    fn sift<F: Fn(&Profiles, usize) -> SharedClass>(&mut self, crowd: &Crowd<'_, F>, bracket: [f32; 2]) {
-        let Self { profiles, classes, owners, settled, .. } = self;
-        classes.clear();
-        owners.clear();
-        *settled = Settled::all(profiles, crowd.census);
-        let mut all = *settled;
-        sift(crowd.weight, crowd.place, profiles.holds(), bracket, settled, |i| {
-            if (crowd.place[i] as usize) < crowd.census.len() {
-                all.dismiss(profiles, crowd.place[i] as usize);
-            }
-            classes.push((crowd.class)(profiles, i));
-            owners.push(i as u32);
-        });
-        let Settled { value, least, unit, .. } = *settled;
-        *settled = Settled { value, least, unit, ..all };
-    }
-
-    /// The greedy of a crowd, the budget being inside the bracket.
-    fn greedy_in<F: Fn(&Profiles, usize) -> SharedClass>(
-        &mut self,
-        crowd: &Crowd<'_, F>,
-        survey: Survey,
-        budget: u64,
-        bracket: [f32; 2],
-        key: &impl Fn(usize) -> u128,
-    ) -> Critical {
-        let mut critical = Critical::default();
-        let mut room = budget - survey.above;
-        let owners = std::mem::take(&mut self.owners);
-        self.take(budget, &mut room, &mut critical, &|i| key(owners[i] as usize));
-        self.owners = owners;
-        critical.descend(survey.low, room, budget);
-        let mut above = survey.low;
-        while critical.step.is_some() && !critical.done {
-            let low = critical.low();
-            self.unsettle(crowd, bracket, [low, above], room);
-            self.gather(low, room);
-            let owners = std::mem::take(&mut self.owners);
-            self.take(budget, &mut room, &mut critical, &|i| key(owners[i] as usize));
-            self.owners = owners;
-            critical.descend(low.next_down(), room, budget);
-            above = low;
-        }
-        critical
-    }
-
-    /// Takes settled classes back into `classes` whose next step is between `low` and `above` and fits.
-    fn unsettle<F: Fn(&Profiles, usize) -> SharedClass>(
-        &mut self,
-        crowd: &Crowd<'_, F>,
-        bracket: [f32; 2],
-        [low, above]: [f32; 2],
-        room: u64,
-    ) {
-        let Self { profiles, classes, owners, settled, choice, blocked, .. } = self;
-        crowd::openings(crowd, profiles.holds(), bracket, low, |i| {
-            let class = (crowd.class)(profiles, i);
-            let (position, slope) = {
-                let class = Class::new(profiles, &class);
-                let held = class.held();
-                let fits = held < class.last() && class.cost(held + 1) - class.cost(held) <= room;
-                (held, if fits { class.slope(held) } else { 0.0 })
-            };
-            if slope >= low && slope < above {
-                let item = crowd.place[i] as usize;
-                settled.dismiss(profiles, item);
-                settled.devalue(crowd.weight[i], &profiles.holds()[item]);
-                classes.push(class);
-                owners.push(i as u32);
-                choice.push(position);
-                blocked.push(false);
-            }
-        });
-    }
-
-    fn class(&self, i: usize) -> Class<'_> {
-        Class::new(&self.profiles, &self.classes[i])
     }
 
     /// What to spend: what is held, held between `ease` and `budget`. Where the dead band alone would keep an item out
@@ -441,21 +276,12 @@ impl SharedKnapsack {
         }
     }
 
-    /// The bracket to sift a crowd by: around the last λ, or beyond all slopes where no step was affordable or all were.
-    fn crowd_bracket(&self) -> Option<[f32; 2]> {
-        match self.bracket.last {
-            Last::Nothing => None,
-            Last::Cheapest => Some([f32::MAX; 2]),
-            Last::Everything => Some([f32::MIN_POSITIVE; 2]),
-            Last::Lambda => (self.bracket.lambda > 0.0).then(|| self.warm_bracket()),
-        }
-    }
-
     /// One pass: every class takes its steps at or above the bracket's upper end into `choice`, its steps inside go to
     /// `undecided`, and the costs are summed.
     fn survey(&mut self, bracket: [f32; 2], pin: Option<Pin>) -> Survey {
         let [low, high] = bracket;
-        let mut survey = Survey { low, ..Survey::default() };
+        let cost = self.aside.cost;
+        let mut survey = Survey { low, above: cost, down_to: cost, ..Survey::default() };
         self.undecided.clear();
         self.choice.clear();
         self.blocked.clear();
@@ -475,7 +301,6 @@ impl SharedKnapsack {
             }
             survey.add(&class, above, down_to);
         }
-        survey.add_settled(&self.settled);
         survey
     }
 
@@ -516,7 +341,7 @@ impl SharedKnapsack {
         let mut room = budget - survey.above;
         self.take(budget, &mut room, &mut critical, key);
         critical.descend(survey.low, room, budget);
-        while critical.step.is_some() && !critical.done {
+        while critical.goes_on() {
             self.gather(critical.low(), room);
             self.take(budget, &mut room, &mut critical, key);
             critical.descend(critical.low().next_down(), room, budget);
@@ -564,10 +389,13 @@ impl SharedKnapsack {
 
     /// Takes undecided steps in order of slope while they fit; a class whose step does not fit takes no later one.
     fn take(&mut self, budget: u64, room: &mut u64, critical: &mut Critical, key: &impl Fn(usize) -> u128) {
+        let owners = &self.owners;
+        let key =
+            |class: u32| key(owners.get(class as usize).map_or(class as usize, |&owner| owner as usize));
         self.undecided.sort_unstable_by(|a, b| {
             b.slope
                 .total_cmp(&a.slope)
-                .then_with(|| key(a.class as usize).cmp(&key(b.class as usize)))
+                .then_with(|| key(a.class).cmp(&key(b.class)))
                 .then(a.from.cmp(&b.from))
         });
         critical.steps += self.undecided.len();
@@ -619,7 +447,7 @@ impl SharedKnapsack {
         self.rival.clone_from(&self.choice);
         let survey = self.survey([f32::MAX; 2], Some(step));
         let critical = self.greedy(survey, budget, Some(step), key);
-        let rival = self.certify(critical.lambda).outcome(budget, &self.settled);
+        let rival = self.certify(critical.lambda).outcome(budget, &self.aside);
         let steps = found.steps + critical.steps;
         if rival.priced_benefit > found.priced_benefit {
             let Outcome { upper_bound, priced_bound, lambda, .. } = found;
@@ -640,10 +468,6 @@ impl SharedKnapsack {
 }
 
 impl Bracket {
-    fn end_at(&mut self, lambda: f32) {
-        (self.lambda, self.last) = (lambda, Last::Lambda);
-    }
-
     /// After a hit.
     fn narrow(&mut self) {
         self.width = (self.width * 0.9).max(*WIDTH.start());

@@ -4,7 +4,7 @@
 //! set of *profiles*, the hull of the class is the hull of its profile whatever weight and scale are. It is made once.
 
 use super::SharedClass;
-use super::crowd::Hold;
+use super::sift::Hold;
 use crate::knapsack::{Item, upper_hull};
 
 /// One vertex of a profile's hull.
@@ -126,6 +126,11 @@ impl Profiles {
             positions[usize::from(self.held[item])].ticks,
             positions[positions.len() - 1].ticks,
         ]
+    }
+
+    /// The caller's code of the item of this number.
+    pub(super) fn code(&self, item: u32) -> u8 {
+        self.items[item as usize].item
     }
 
     /// A class of scale 1 that holds the item of this number, among those of all profiles.
