@@ -399,10 +399,10 @@ proptest! {
             let crowd = Crowd { weight: &weight, place: &place, census: &census, odd: &odd, stay };
             let outcome = crowded.solve_crowd(&crowd, budget, ease, |m| m as u128);
             let mut found = held.clone();
-            crowded.changed(&crowd).for_each(|(m, code)| found[m] = code);
+            crowded.changed().for_each(|(m, code)| found[m] = code);
             prop_assert_eq!(&found, &listed.chosen);
             prop_assert_eq!((outcome.cost, outcome.shortfall), (plain.cost, plain.shortfall));
-            let close = |a: f64, b: f64| (a - b).abs() <= 1e-6 * plain.upper_bound.abs() + 1e-5;
+            let close = |a: f64, b: f64| (a - b).abs() <= 1e-6 * plain.upper_bound.abs() + 1e-4;
             prop_assert!(close(outcome.benefit, plain.benefit), "{} {}", outcome.benefit, plain.benefit);
             prop_assert!(close(outcome.minimum_benefit, plain.minimum_benefit));
             if plain.shortfall == 0 {

@@ -123,7 +123,7 @@ impl Predictive {
         let stay = |i: usize| self.options.price(previous[i], age_ms[i]);
         let crowd = Crowd { weight, place, census, odd: &self.odd, stay };
         let outcome = self.knapsack.solve_crowd(&crowd, budget, ease, |i| frame.key(i));
-        for (i, item) in self.knapsack.changed(&crowd) {
+        for (i, item) in self.knapsack.changed() {
             levels[i] = Level(item);
         }
         outcome

@@ -102,6 +102,7 @@ pub(super) struct Aside {
 #[derive(Clone, Copy, Debug)]
 struct Decided {
     at: u32,
+    class: SharedClass,
     position: u8,
     /// It has been listed after all.
     listed: bool,
@@ -150,16 +151,10 @@ impl Aside {
     }
 
     /// Adds up what the price of switching keeps the hovering classes from at λ.
-    pub fn weigh_hovering<F: Fn(usize) -> f32>(
-        &mut self,
-        profiles: &Profiles,
-        crowd: &Crowd<'_, F>,
-        lambda: f32,
-    ) {
+    fn weigh_hovering(&mut self, profiles: &Profiles, lambda: f32) {
         (self.hover_value, self.hover_cost) = (0, 0);
-        for &Decided { at, position, .. } in self.hovering.iter().filter(|h| !h.listed) {
-            let class = crowd.class(profiles, at as usize);
-            let class = Class::new(profiles, &class);
+        for Decided { class, position, .. } in self.hovering.iter().filter(|h| !h.listed) {
+            let (class, position) = (Class::new(profiles, class), *position);
             let best = reach(position, lambda, |p| class.plain_slope(p));
             let value = |p: u8| self.benefit.of(class.weight, class.positions[usize::from(p)].value);
             self.hover_value += value(best) - value(position);
@@ -205,13 +200,10 @@ impl SharedKnapsack {
     }
 
     /// The classes of a crowd that were looked at closely, and the codes of their chosen items.
-    pub fn changed<'a, F: Fn(usize) -> f32>(
-        &'a self,
-        crowd: &'a Crowd<'_, F>,
-    ) -> impl Iterator<Item = (usize, u8)> + 'a {
+    pub fn changed(&self) -> impl Iterator<Item = (usize, u8)> {
         let moved = self.aside.moved.iter().filter(|m| !m.listed).map(|moved| {
-            let class = crowd.class(&self.profiles, moved.at as usize);
-            (moved.at as usize, self.profiles.positions(class.profile)[usize::from(moved.position)].item)
+            let positions = self.profiles.positions(moved.class.profile);
+            (moved.at as usize, positions[usize::from(moved.position)].item)
         });
         let listed = self.owners.iter().zip(&self.chosen).map(|(&owner, &item)| (owner as usize, item));
         moved.chain(listed)
@@ -229,12 +221,12 @@ impl SharedKnapsack {
         if totals.cheapest > budget {
             self.sift(crowd, [f32::MAX; 2]);
             let shortfall = totals.cheapest - budget;
-            return Some(Outcome { shortfall, ..self.sum_up(crowd, 0.0).outcome(budget, &self.aside) });
+            return Some(Outcome { shortfall, ..self.sum_up(0.0).outcome(budget, &self.aside) });
         }
         let target = totals.held.clamp(ease, budget);
         if totals.best <= target {
             self.sift(crowd, [f32::MIN_POSITIVE; 2]);
-            return Some(self.sum_up(crowd, 0.0).outcome(budget, &self.aside));
+            return Some(self.sum_up(0.0).outcome(budget, &self.aside));
         }
         if totals.widest > target - totals.cheapest {
             return None;
@@ -242,7 +234,7 @@ impl SharedKnapsack {
         let (survey, bracket) = self.bracket_crowd(crowd, target)?;
         let critical = self.greedy_aside(crowd, survey, target, bracket, key);
         self.bracket.lambda = critical.lambda;
-        let sums = self.sum_up(crowd, critical.lambda);
+        let sums = self.sum_up(critical.lambda);
         let is_near = sums.outcome(target, &self.aside).priced_gap() <= super::RIVAL_GAP;
         is_near.then(|| Outcome { steps: critical.steps, ..sums.outcome(budget, &self.aside) })
     }
@@ -327,7 +319,7 @@ impl SharedKnapsack {
                 continue;
             }
             aside.add(&class, above);
-            let decided = Decided { at: i, position: above, listed: false };
+            let decided = Decided { at: i, class: shared, position: above, listed: false };
             // A held item that is no corner of its hull is not held on.
             if class.positions[usize::from(above)].item != profiles.code(crowd.place[i as usize]) {
                 aside.mark(i as usize);
@@ -398,8 +390,7 @@ impl SharedKnapsack {
         }
         self.opened = found;
         for at in 0..self.aside.moved.len() {
-            let Decided { at: i, position, listed } = self.aside.moved[at];
-            let shared = crowd.class(&self.profiles, i as usize);
+            let Decided { at: i, class: shared, position, listed } = self.aside.moved[at];
             let class = Class::new(&self.profiles, &shared);
             if !listed && is_opening(&class, position) {
                 self.aside.remove(&class, position);
@@ -421,8 +412,8 @@ impl SharedKnapsack {
     }
 
     /// Sums up the choice and the classes set aside, and what is possible at λ.
-    fn sum_up<F: Fn(usize) -> f32>(&mut self, crowd: &Crowd<'_, F>, lambda: f32) -> Sums {
-        self.aside.weigh_hovering(&self.profiles, crowd, lambda);
+    fn sum_up(&mut self, lambda: f32) -> Sums {
+        self.aside.weigh_hovering(&self.profiles, lambda);
         self.certify(lambda)
     }
 }

@@ -165,7 +165,7 @@ const BUCKET_SHIFT: u32 = 31 - 12;
 
 /// After the first step that does not fit, others are looked for down to these fractions of its slope, a pass each. More
 /// windows find less to sort in each, and cost more passes.
-const FILL_WINDOWS: [f32; 8] = [0.95, 0.8, 0.5, 0.2, 0.05, 0.01, 0.001, 0.0];
+const FILL_WINDOWS: [f32; 9] = [0.99, 0.95, 0.8, 0.5, 0.2, 0.05, 0.01, 0.001, 0.0];
 
 /// The fill stops when less than this fraction of the budget is left: it would buy less than looking costs.
 const FILL_ENOUGH: u64 = 1 << 15;
@@ -270,7 +270,8 @@ impl SharedKnapsack {
     fn warm_bracket(&self) -> [f32; 2] {
         let Bracket { lambda, width, .. } = self.bracket;
         if lambda > 0.0 {
-            [(lambda * (1.0 - width)).max(f32::MIN_POSITIVE), lambda * (1.0 + width)]
+            // Farther below than above, so that the first fill window is in it.
+            [(lambda * (0.99 - 1.5 * width)).max(f32::MIN_POSITIVE), lambda * (1.0 + width)]
         } else {
             [f32::MAX; 2]
         }

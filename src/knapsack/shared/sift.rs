@@ -47,7 +47,7 @@ impl Units {
     /// So many units as `weight` times `value` counts.
     pub fn of(&self, weight: f32, value: f32) -> i128 {
         let rounding = rounding(self.unit);
-        ((product(weight, value) + rounding - rounding) / self.unit) as i128
+        i128::from(((product(weight, value) + rounding - rounding) / self.unit) as i64)
     }
 }
 
@@ -129,8 +129,8 @@ fn columns(place: &[u32; LANES], holds: &[Hold]) -> [[f32; LANES]; 4] {
     let row = |place: u32| holds[(place as usize).min(last)].0;
     let mut columns = [[0.0; LANES]; 4];
     for (quad, places) in place.as_chunks::<4>().0.iter().enumerate() {
-        let [a, b, c, d] = places.map(row);
-        let turned = Mat4::from_cols(a, b, c, d).transpose();
+        let turned =
+            Mat4::from_cols(row(places[0]), row(places[1]), row(places[2]), row(places[3])).transpose();
         for (column, part) in
             columns.iter_mut().zip([turned.x_axis, turned.y_axis, turned.z_axis, turned.w_axis])
         {
@@ -145,8 +145,8 @@ fn product(weight: f32, value: f32) -> f64 {
 }
 
 fn carry(sums: &mut Lanes, settled: &mut Units) {
-    settled.value += sums.value.iter().map(|sum| (sum / settled.unit) as i128).sum::<i128>();
-    settled.least += sums.least.iter().map(|sum| (sum / settled.unit) as i128).sum::<i128>();
+    settled.value += sums.value.iter().map(|sum| i128::from((sum / settled.unit) as i64)).sum::<i128>();
+    settled.least += sums.least.iter().map(|sum| i128::from((sum / settled.unit) as i64)).sum::<i128>();
     *sums = Lanes { value: [0.0; LANES], least: [0.0; LANES] };
 }
 
