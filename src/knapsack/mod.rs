@@ -61,7 +61,7 @@ pub use greedy::{Effort, greedy, greedy_within};
 pub use hull::{Step, compare_slopes, upper_hull, upper_hull_of};
 pub use instance::{Instance, InstanceError, Item};
 #[cfg(feature = "files")]
-pub use json::InstanceFileError;
+pub use json::InstanceJsonError;
 pub use shared::{Outcome, Position, ProfileItem, Profiles, SharedClass, SharedKnapsack};
 pub use solution::Solution;
 pub use sum::FixedSum;
