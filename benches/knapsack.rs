@@ -5,7 +5,7 @@
 //! cargo bench --bench knapsack
 //! ```
 //!
-//! Ids are `greedy/N` and `exact/N` for N classes of two to six levels each, triangles halving or better from one to
+//! Ids are `greedy/N`, `capped/N` (100 000 steps) and `exact/N` for N classes of two to six levels each, triangles halving or better from one to
 //! the next and benefits of a size at random times 1 − ½ / triangles; the budget is two fifths of the way from the
 //! least to the most.
 
@@ -13,11 +13,12 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use lod_budget::knapsack::{Instance, Item, exact, greedy};
+use lod_budget::knapsack::{Instance, Item, capped, exact, greedy};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 const CLASSES: [usize; 3] = [100, 1_000, 10_000];
+const CAP_STEPS: u64 = 100_000;
 
 fn instance(classes: usize) -> Instance {
     let mut random = Pcg64::seed_from_u64(1995);
@@ -43,9 +44,12 @@ fn class(random: &mut Pcg64) -> Vec<Item> {
 fn solvers(c: &mut Criterion) {
     for classes in CLASSES {
         let instance = instance(classes);
-        for (name, solve) in
-            [("greedy", greedy as fn(&Instance) -> _), ("exact", |i| exact(i, &mut || false))]
-        {
+        let solvers: [(_, fn(&Instance) -> _); 3] = [
+            ("greedy", greedy),
+            ("capped", |i| capped(i, CAP_STEPS)),
+            ("exact", |i| exact(i, &mut || false)),
+        ];
+        for (name, solve) in solvers {
             let mut group = c.benchmark_group(name);
             group.sample_size(10).nresamples(2000);
             group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_secs(1));

@@ -275,7 +275,7 @@ fn instances_that_are_no_good_are_named() {
         room.refused("solve a.json", &all);
     }
     room.put("a.json", b"{\"budget\": \xff\xff}");
-    room.refused("solve a.json", &["a.json", "UTF-8"]);
+    room.refused("solve a.json", &["a.json: ", "UTF-8"]);
     room.refused("solve gone.json", &["gone.json: it cannot be read"]);
     room.put("a.json", instance("1", "[-1, 1]"));
     room.refused("inspect a.json", &["a.json", "class 1, item 0", "-1"]);

@@ -168,7 +168,7 @@ pub fn inspect_json(bytes: &[u8], file: &str) -> Result<Inspection, FileError> {
     let text = disk::text_of(bytes, file)?;
     match super::json::parse(text, file)? {
         Keys { classes: Some(_), tables: None } => {
-            let instance = Instance::from_json(text).map_err(|e| FileError::whole(file, e.to_string()))?;
+            let instance = Instance::from_bytes(bytes, file)?;
             Ok(Inspection::Instance(InstanceInspection::of(&instance)))
         }
         _ => Scene::from_json(bytes, file).map(|s| Inspection::Scene(SceneInspection::of(&s))),

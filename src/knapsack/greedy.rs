@@ -1,11 +1,39 @@
-//! The textbook solver: the linear relaxation's greedy on convex hulls, with fill, and at least half of the optimum.
+//! The textbook solver: the linear relaxation's greedy on convex hulls, with fill and repair, and at least half of the optimum.
 
-use std::cmp::Ordering;
-
+use super::attempt::Attempt;
 use super::dyadic::{Number, WideSum};
-use super::hull::{Step, compare_slopes, upper_hull_of};
-use super::ledger::{Grids, Ledger, Totals, UpperBound, cheapest};
+use super::ledger::{Grids, Ledger, UpperBound, cheapest};
+use super::meter::Meter;
+use super::relaxation::{Relaxation, sorted_steps};
 use super::{Instance, Solution};
+
+/// How much work [`greedy_within`] may do beyond building hulls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effort {
+    /// Hull steps looked at and partial choices made by the repair, at most.
+    pub steps: u64,
+    /// Items that the repair may exchange for the chosen ones: those whose slopes are nearest to λ. 0 for the textbook's greedy alone.
+    pub exchanges: usize,
+    /// Partial choices that each of the repair's two lists may hold. More of them close the gap further, and cost time in proportion.
+    pub states: usize,
+}
+
+impl Effort {
+    /// The greedy alone: no limit and no repair.
+    pub const TEXTBOOK: Self = Self { steps: u64::MAX, exchanges: 0, states: 0 };
+}
+
+impl Default for Effort {
+    /// No limit on the steps, and a repair of some ten thousand of them: at a thousand classes nearly as good as the optimum.
+    fn default() -> Self {
+        Self { steps: u64::MAX, exchanges: 64, states: 512 }
+    }
+}
+
+/// [`greedy_within`] the default effort: what to take where nothing speaks against it.
+pub fn greedy(instance: &Instance) -> Solution {
+    greedy_within(instance, Effort::default())
+}
 
 /// Solves by the slopes of the classes' upper hulls, steepest first.
 ///
@@ -13,173 +41,61 @@ use super::{Instance, Solution};
 /// 2. All classes start at their cheapest item. Hull steps are taken in order of (slope descending, class ascending, cost ascending); a
 ///    step that does not fit is skipped, its class takes no later step, and the rest go on.
 /// 3. The first step that did not fit is the critical one. A second attempt takes its item first and then goes through the steps again;
-///    the better attempt is the answer, on a tie the first.
+///    the better attempt is kept, on a tie the first.
+/// 4. What is left of the budget is spent by exchanging a few items with slopes near the critical one, λ, and by taking steps again.
 ///
 /// The benefit is at least half of the optimum: the linear optimum is at most the first attempt up to the critical step plus that step, and each
 /// attempt holds one of the two (Kellerer, Pferschy, Pisinger, *Knapsack Problems*, 2004, ch. 11). The upper bound is that linear optimum,
-/// g(λ) at the critical slope λ. Slopes, sums and fits are exact. O(n log n) for n items; sorts all of them, so it is the
-/// twin that faster solvers are tested against rather than the one for every frame.
-pub fn greedy(instance: &Instance) -> Solution {
-    let grids = Grids::of(instance);
-    if grids.bits() <= i128::BITS {
-        solve(&Ledger::<i128>::new(instance, grids))
-    } else {
-        solve(&Ledger::<WideSum>::new(instance, grids))
-    }
+/// g(λ). Slopes, sums and fits are exact. O(n log n) for n items: it sorts all of them, so it is not the one for every frame.
+///
+/// Anytime: cut by `effort.steps`, at the same place on every machine, the answer is within the budget wherever any is and its bound
+/// holds; the half is promised once 2 and 3 are through. Finding the cheapest items and the steepest steps is not counted and takes O(n + s log s) for s
+/// steps.
+pub fn greedy_within(instance: &Instance, effort: Effort) -> Solution {
+    quick(instance, effort).solution
 }
 
-fn solve<T: Number>(ledger: &Ledger<'_, T>) -> Solution {
+/// An answer, and the relaxation that it comes from: `None` where there is nothing left to search, or the effort ended before λ was
+/// known.
+#[derive(Clone, Debug)]
+pub(super) struct Quick {
+    pub solution: Solution,
+    pub relaxation: Option<Relaxation>,
+}
+
+/// [`greedy_within`] for a search that goes on from there.
+pub(super) fn quick(instance: &Instance, effort: Effort) -> Quick {
+    let grids = Grids::of(instance);
+    let mut never = || false;
+    let mut meter = Meter::new(effort.steps, &mut never);
+    let mut quick = if grids.bits() <= i128::BITS {
+        solve(&Ledger::<i128>::new(instance, grids), effort, &mut meter)
+    } else {
+        solve(&Ledger::<WideSum>::new(instance, grids), effort, &mut meter)
+    };
+    quick.solution.steps = meter.made();
+    quick
+}
+
+fn solve<T: Number>(ledger: &Ledger<'_, T>, effort: Effort, meter: &mut Meter<'_>) -> Quick {
     let start = Attempt::new(ledger, cheapest(ledger.instance));
     if start.totals.cost > ledger.budget {
-        return ledger.infeasible(start.choice);
+        return Quick { solution: ledger.infeasible(start.choice), relaxation: None };
     }
-    let steps = sorted_steps(ledger, &start);
+    let steps = sorted_steps(ledger, &start.choice, start.totals.cost, meter.left());
     let mut filled = start.clone();
-    let Some(critical) = filled.walk(&steps) else {
-        return ledger.solution(filled.choice, filled.totals, 0.0, UpperBound::Met(0.0));
+    let Some(edge) = filled.walk(&steps, meter) else {
+        let solution = ledger.solution(filled.choice, filled.totals, 0.0, UpperBound::Met(0.0));
+        return Quick { solution, relaxation: None };
     };
-    let mut forced = start;
-    forced.switch(critical.step.class, critical.step.to);
-    forced.walk(&steps);
-    let better = if forced.totals.benefit > filled.totals.benefit { forced } else { filled };
-    let (slope, bound) = (critical.slope(ledger), critical.linear_bound(ledger));
-    ledger.solution(better.choice, better.totals, slope, bound)
-}
-
-/// The integer part of the linear relaxation's optimum: every step steeper than the critical one taken.
-#[derive(Clone, Debug)]
-pub(crate) struct Relaxation {
-    pub choice: Vec<u32>,
-    /// The slope of the step that the budget cuts; 0 when none is cut.
-    pub lambda: f64,
-}
-
-/// Solves the linear relaxation; `None` when nothing is feasible.
-pub(crate) fn relax<T: Number>(ledger: &Ledger<'_, T>) -> Option<Relaxation> {
-    let mut attempt = Attempt::new(ledger, cheapest(ledger.instance));
-    if attempt.totals.cost > ledger.budget {
-        return None;
+    let relaxation = edge.relaxation(&start.choice, &steps);
+    let mut best = start.rival(edge.step, &steps, meter).better_than(filled);
+    if effort.exchanges > 0 {
+        best.repair(&relaxation, &steps, effort, meter);
     }
-    for step in sorted_steps(ledger, &attempt) {
-        if attempt.with(step.class, step.to).cost > ledger.budget {
-            return Some(Relaxation { choice: attempt.choice, lambda: step.geometry(ledger).slope() });
-        }
-        attempt.switch(step.class, step.to);
-    }
-    Some(Relaxation { choice: attempt.choice, lambda: 0.0 })
-}
-
-/// A step from one item of a class's hull to the next.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct HullStep {
-    pub class: u32,
-    pub from: u32,
-    pub to: u32,
-}
-
-impl HullStep {
-    pub fn geometry<T: Number>(&self, ledger: &Ledger<'_, T>) -> Step {
-        let class = self.class as usize;
-        Step { from: ledger.item(class, self.from), to: ledger.item(class, self.to) }
-    }
-}
-
-/// The hull steps of all classes, steepest first; of equal slopes the lower class, then the cheaper step.
-fn sorted_steps<T: Number>(ledger: &Ledger<'_, T>, start: &Attempt<'_, T>) -> Vec<HullStep> {
-    let mut steps = Vec::with_capacity(ledger.instance.items().len());
-    let mut hull = Vec::new();
-    for (class, items) in ledger.instance.classes().enumerate() {
-        let others = start.totals.cost - ledger.cost(items[start.choice[class] as usize]);
-        upper_hull_of(items, |&item| others + ledger.cost(item) <= ledger.budget, &mut hull);
-        steps.extend(hull.windows(2).map(|ends| HullStep {
-            class: class as u32,
-            from: ends[0],
-            to: ends[1],
-        }));
-    }
-    // Steps of one class are in order already, and the sort is stable.
-    steps.sort_by(|a, b| steeper_first(a.geometry(ledger), b.geometry(ledger)).then(a.class.cmp(&b.class)));
-    steps
-}
-
-fn steeper_first(a: Step, b: Step) -> Ordering {
-    compare_slopes(b, a)
-}
-
-/// A choice under construction.
-#[derive(Clone, Debug)]
-struct Attempt<'a, T> {
-    ledger: &'a Ledger<'a, T>,
-    choice: Vec<u32>,
-    totals: Totals<T>,
-}
-
-impl<'a, T: Number> Attempt<'a, T> {
-    fn new(ledger: &'a Ledger<'a, T>, choice: Vec<u32>) -> Self {
-        let totals = ledger.totals(&choice);
-        Self { ledger, choice, totals }
-    }
-
-    /// Totals once `class` has chosen `item`.
-    fn with(&self, class: u32, item: u32) -> Totals<T> {
-        let old = self.ledger.item(class as usize, self.choice[class as usize]);
-        let new = self.ledger.item(class as usize, item);
-        Totals {
-            cost: self.totals.cost - self.ledger.cost(old) + self.ledger.cost(new),
-            benefit: self.totals.benefit - self.ledger.benefit(old) + self.ledger.benefit(new),
-        }
-    }
-
-    fn switch(&mut self, class: u32, item: u32) {
-        self.totals = self.with(class, item);
-        self.choice[class as usize] = item;
-    }
-
-    /// Takes every step that starts where its class stands and fits; returns the first that did not fit.
-    ///
-    /// A class whose step was skipped never again stands where one of its steps starts: it is blocked.
-    fn walk(&mut self, steps: &[HullStep]) -> Option<Critical<T>> {
-        let mut critical = None;
-        for &step in steps.iter() {
-            if self.choice[step.class as usize] != step.from {
-                continue;
-            }
-            if self.with(step.class, step.to).cost <= self.ledger.budget {
-                self.switch(step.class, step.to);
-            } else if critical.is_none() {
-                critical = Some(Critical { step, before: self.totals });
-            }
-        }
-        critical
-    }
-}
-
-/// The step that the budget cuts, and the totals of all steeper ones.
-#[derive(Clone, Copy, Debug)]
-struct Critical<T> {
-    step: HullStep,
-    before: Totals<T>,
-}
-
-impl<T: Number> Critical<T> {
-    fn slope(&self, ledger: &Ledger<'_, T>) -> f64 {
-        self.step.geometry(ledger).slope()
-    }
-
-    /// The linear relaxation's optimum, rounded up: the steeper steps and the part of this one that fits. Met where no part fits:
-    /// the totals before it are the optimum.
-    fn linear_bound(&self, ledger: &Ledger<'_, T>) -> UpperBound {
-        let Step { from, to } = self.step.geometry(ledger);
-        let room = ledger.budget - self.before.cost;
-        if room == T::ZERO {
-            return UpperBound::Met(0.0);
-        }
-        let run = ledger.cost(to) - ledger.cost(from);
-        let rise = ledger.benefit(to) - ledger.benefit(from);
-        let part = (room.to_f64_up(ledger.cost_unit) / run.to_f64_down(ledger.cost_unit)).next_up().min(1.0);
-        let gain = (part * rise.to_f64_up(ledger.benefit_unit)).next_up();
-        UpperBound::Open((self.before.benefit.to_f64_up(ledger.benefit_unit) + gain).next_up())
-    }
+    let solution = ledger.solution(best.choice, best.totals, relaxation.lambda, edge.linear_bound(ledger));
+    let open = !solution.optimal && edge.is_critical(ledger);
+    Quick { solution, relaxation: open.then_some(relaxation) }
 }
 
 #[cfg(test)]

@@ -93,7 +93,7 @@ fn differences(step: Step) -> [Difference; 2] {
     [difference(step.to.benefit, step.from.benefit), difference(step.to.cost, step.from.cost)]
 }
 
-/// Knuth's two-sum, with a minus (D. E. Knuth, The Art of Computer Programming 2, 4.2.2). Exact for non-negative finite values.
+/// Knuth's two-sum, with a minus (D. E. Knuth, The Art of Computer Programming 2, 4.2.2). Exact unless it overflows.
 pub(crate) fn difference(a: f64, b: f64) -> Difference {
     let high = a - b;
     let b_virtual = a - high;

@@ -17,35 +17,35 @@ impl Instance {
     ///
     /// Errors give line and column and, inside `classes`, the class and the item, counted from 0. Unknown or repeated keys are errors. Items
     /// are checked as they are read, so the first broken one ends the reading.
-    pub fn from_json(text: &str) -> Result<Self, InstanceFileError> {
+    pub fn from_json(text: &str) -> Result<Self, InstanceJsonError> {
         Self::parse(serde_json::Deserializer::from_str(text))
     }
 
     /// [`Instance::from_json`] from a reader, such as a file; wrap it in a `BufReader`.
-    pub fn read_json(reader: impl Read) -> Result<Self, InstanceFileError> {
+    pub fn read_json(reader: impl Read) -> Result<Self, InstanceJsonError> {
         Self::parse(serde_json::Deserializer::from_reader(reader))
     }
 
     fn parse<'a, R: serde_json::de::Read<'a>>(
         mut json: serde_json::Deserializer<R>,
-    ) -> Result<Self, InstanceFileError> {
+    ) -> Result<Self, InstanceJsonError> {
         let (budget, builder) = json.deserialize_map(Document)?;
         json.end()?;
         Ok(builder.finish(budget)?)
     }
 }
 
-/// Why a JSON instance could not be read.
+/// Why a text is no instance. It has no name; [`Instance::read`] puts the file's before it.
 #[derive(Debug)]
 #[non_exhaustive]
-pub enum InstanceFileError {
+pub enum InstanceJsonError {
     /// The text is not an instance; says where and, inside `classes`, in which class and item.
     Json(serde_json::Error),
     /// The text is an instance that breaks a rule on the whole.
     Instance(InstanceError),
 }
 
-impl fmt::Display for InstanceFileError {
+impl fmt::Display for InstanceJsonError {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Json(error) => write!(out, "{error}"),
@@ -54,7 +54,7 @@ impl fmt::Display for InstanceFileError {
     }
 }
 
-impl Error for InstanceFileError {
+impl Error for InstanceJsonError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         match self {
             Self::Json(error) => Some(error),
@@ -63,13 +63,13 @@ impl Error for InstanceFileError {
     }
 }
 
-impl From<serde_json::Error> for InstanceFileError {
+impl From<serde_json::Error> for InstanceJsonError {
     fn from(error: serde_json::Error) -> Self {
         Self::Json(error)
     }
 }
 
-impl From<InstanceError> for InstanceFileError {
+impl From<InstanceError> for InstanceJsonError {
     fn from(error: InstanceError) -> Self {
         Self::Instance(error)
     }
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn an_instance_is_read() -> Result<(), InstanceFileError> {
+    fn an_instance_is_read() -> Result<(), InstanceJsonError> {
         let text = r#"{"format": "lod-knapsack", "version": 1, "budget": 2.5, "classes": [[[1, 2], [3e0, 4]], [[0, 0.1]]]}"#;
         let expected = Instance::new(
             2.5,

@@ -103,6 +103,7 @@ impl<'a, T: Number> Ledger<'a, T> {
             feasible: true,
             optimal,
             shortfall: 0.0,
+            steps: 0,
         }
     }
 
@@ -119,6 +120,7 @@ impl<'a, T: Number> Ledger<'a, T> {
             optimal: false,
             shortfall: excess(self.instance, &choice),
             choice,
+            steps: 0,
         }
     }
 }

@@ -23,4 +23,7 @@ pub struct Solution {
     pub optimal: bool,
     /// How far the cheapest choice exceeds the budget; 0 when feasible.
     pub shortfall: f64,
+    /// Steps of work counted against a limit, the same on every machine: see [`greedy_within`](super::greedy_within) and
+    /// [`capped`](super::capped).
+    pub steps: u64,
 }

@@ -1,6 +1,5 @@
 //! `lod solve`: one multiple-choice knapsack.
 
-use std::fs;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -54,18 +53,12 @@ fn seconds(text: &str) -> Result<Duration, String> {
 }
 
 fn read(file: &Path) -> anyhow::Result<Instance> {
-    let (name, text) = match file.to_str() {
-        Some("-") => ("standard input".to_owned(), io::read_to_string(io::stdin())),
-        _ => (file.display().to_string(), read_file(file)),
-    };
-    let text = text.with_context(|| format!("{name}: it cannot be read"))?;
-    Instance::from_json(&text).with_context(|| name)
-}
-
-fn read_file(file: &Path) -> io::Result<String> {
-    let mut text = String::new();
-    fs::File::open(file)?.read_to_string(&mut text)?;
-    Ok(text)
+    if file.as_os_str() != "-" {
+        return Ok(Instance::read(file)?);
+    }
+    let mut bytes = Vec::new();
+    io::stdin().read_to_end(&mut bytes).context("standard input: it cannot be read")?;
+    Ok(Instance::from_bytes(&bytes, "standard input")?)
 }
 
 fn solve(instance: &Instance, args: &Args) -> Solution {

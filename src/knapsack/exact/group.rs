@@ -2,6 +2,7 @@
 
 use super::super::dyadic::Number;
 use super::super::ledger::Totals;
+use super::super::meter::Meter;
 use super::prices::{PricedClass, Prices};
 use super::relief::Relief;
 
@@ -73,13 +74,16 @@ impl<T: Number> Group<T> {
         relief: &Relief,
         limit: f64,
         capacity: usize,
-        stop: &mut dyn FnMut() -> bool,
+        meter: &mut Meter<'_>,
     ) -> Result<(), Halt> {
         let limit = limit * SLOP;
         // Capacities are meant for states of 32 bytes.
         let capacity = capacity * 32 / size_of::<State<T>>();
         let mut next = Vec::with_capacity(self.states.len() * 2);
         let mut run = |cost: T, benefit: T, loss: f64, fresh: u32| {
+            if !meter.spend(self.states.len() as u64) {
+                return Err(Halt::Stopped);
+            }
             let mut cursor = relief.cursor();
             for state in &self.states {
                 let (cost, loss) = (state.cost + cost, state.loss + loss);
@@ -92,9 +96,6 @@ impl<T: Number> Group<T> {
                         fresh,
                     });
                 }
-            }
-            if stop() {
-                return Err(Halt::Stopped);
             }
             if next.len() > 4 * capacity { Err(Halt::Full) } else { Ok(()) }
         };

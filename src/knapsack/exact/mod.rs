@@ -18,11 +18,12 @@ mod surcharge;
 use self::group::{Group, Halt, best_pair};
 use self::prices::{PricedClass, Prices};
 use self::quarters::{Half, meet};
-use self::relief::Relief;
+use self::relief::{Edges, Relief};
 use super::dyadic::{Number, WideSum};
-use super::greedy::relax;
+use super::greedy::{Effort, Quick, quick};
 use super::ledger::{Grids, Ledger, Totals, UpperBound};
-use super::{Instance, Solution, greedy};
+use super::meter::Meter;
+use super::{Instance, Solution};
 
 /// Solves to proved optimality, or as far as `stop` and a gigabyte of memory allow.
 ///
@@ -38,19 +39,29 @@ use super::{Instance, Solution, greedy};
 /// S. Sahni, "Computing partitions with applications to the knapsack problem", 1974 (two lists). Departs from both by
 /// bounding the gap instead of starting from an incumbent.
 pub fn exact(instance: &Instance, stop: &mut dyn FnMut() -> bool) -> Solution {
-    exact_within(instance, Capacity::default(), stop)
+    solve(instance, Capacity::default(), u64::MAX, stop)
 }
 
-fn exact_within(instance: &Instance, capacity: Capacity, stop: &mut dyn FnMut() -> bool) -> Solution {
-    let quick = greedy(instance);
-    if quick.optimal || !quick.feasible {
-        return quick;
-    }
+/// [`exact`], cut after `steps`: for a frame that has a hundred classes or so and time for a proof.
+///
+/// A step is a hull step looked at or a partial choice made, some ten nanoseconds each; the count, and so the answer, is the same on
+/// every machine. Hulls, their order and the losses at λ are not counted: O(n log n) for n items. However few the steps, the answer is
+/// within the budget and its bound holds, and it is no worse than that of [`greedy_within`](super::greedy_within) as many. Of a hundred
+/// level-of-detail classes of five, 100 000 steps prove more than nine instances in ten.
+pub fn capped(instance: &Instance, steps: u64) -> Solution {
+    solve(instance, Capacity::default(), steps, &mut || false)
+}
+
+/// The greedy, then the search with the steps that it left over.
+fn solve(instance: &Instance, capacity: Capacity, steps: u64, stop: &mut dyn FnMut() -> bool) -> Solution {
+    let quick = quick(instance, Effort { steps, ..Effort::default() });
     let grids = Grids::of(instance);
+    let meter = &mut Meter::new(steps - quick.solution.steps, stop);
     match grids.bits() {
-        0..=64 => search(&Ledger::<i64>::new(instance, grids), quick, capacity, stop),
-        65..=128 => search(&Ledger::<i128>::new(instance, grids), quick, capacity, stop),
-        _ => search(&Ledger::<WideSum>::new(instance, grids), quick, capacity, stop),
+        _ if quick.relaxation.is_none() => quick.solution,
+        0..=64 => search(&Ledger::<i64>::new(instance, grids), quick, capacity, meter),
+        65..=128 => search(&Ledger::<i128>::new(instance, grids), quick, capacity, meter),
+        _ => search(&Ledger::<WideSum>::new(instance, grids), quick, capacity, meter),
     }
 }
 
@@ -80,8 +91,11 @@ impl Default for Capacity {
 struct Search<'a, T> {
     ledger: &'a Ledger<'a, T>,
     prices: Prices<T>,
+    edges: Edges,
     choice: Vec<u32>,
     totals: Totals<T>,
+    /// The largest gap of a choice better than the best.
+    limit: f64,
     /// No choice has a benefit above this.
     bound: T,
     capacity: Capacity,
@@ -96,8 +110,7 @@ impl<T: Number> Search<'_, T> {
         self.bound <= self.totals.benefit || self.bound.to_f64(unit) <= self.totals.benefit.to_f64(unit)
     }
 
-    /// The largest gap of a choice better than the best.
-    fn limit(&self) -> f64 {
+    fn gap_to_beat(&self) -> f64 {
         self.prices.gap(self.totals.benefit + self.prices.benefit_step)
     }
 
@@ -105,6 +118,7 @@ impl<T: Number> Search<'_, T> {
         let totals = self.ledger.totals(&choice);
         if totals.cost <= self.ledger.budget && totals.benefit > self.totals.benefit {
             (self.choice, self.totals) = (choice, totals);
+            self.limit = self.gap_to_beat();
         }
     }
 
@@ -112,7 +126,7 @@ impl<T: Number> Search<'_, T> {
     ///
     /// Two lists grow towards each other, the shorter one first, and are joined after each class. Once one is full, a third list of
     /// the classes left is tried against both: complete where it holds all of them, else a search for a better choice.
-    fn explore(&mut self, level: f64, stop: &mut dyn FnMut() -> bool) -> Result<(), Halt> {
+    fn explore(&mut self, level: f64, meter: &mut Meter<'_>) -> Result<(), Halt> {
         let classes = std::mem::take(&mut self.prices.classes);
         let mut halves = [Group::new(), Group::new()];
         let mut sides = vec![Side::Open; classes.len()];
@@ -123,15 +137,11 @@ impl<T: Number> Search<'_, T> {
             }
             let side = usize::from(halves[1].states.len() < halves[0].states.len());
             sides[at] = [Side::Left, Side::Right][side];
-            let relief = Relief::of(self.prices.lambda, outside(&classes, &sides, sides[at]));
-            result = halves[side].extend(
-                &self.prices,
-                &classes[at],
-                &relief,
-                self.cap(level),
-                self.capacity.list,
-                stop,
-            );
+            let relief = self.relief(|other| sides[other] != sides[at], meter);
+            let (cap, list) = (self.cap(level), self.capacity.list);
+            result = relief.and_then(|relief| {
+                halves[side].extend(&self.prices, &classes[at], &relief, cap, list, meter)
+            });
             if result.is_err() {
                 sides[at] = Side::Open;
                 break;
@@ -139,19 +149,19 @@ impl<T: Number> Search<'_, T> {
             self.join(&halves, None);
         }
         if result == Err(Halt::Full) {
-            result = self.sweep(&classes, &mut sides, &halves, level, self.capacity.third[0], stop);
+            result = self.sweep(&classes, &mut sides, &halves, level, self.capacity.third[0], meter);
         }
         if result == Err(Halt::Full) {
-            result = self.quarters(&classes, f64::INFINITY, self.capacity.eager, stop);
+            result = self.quarters(&classes, f64::INFINITY, self.capacity.eager, meter);
         }
         if result == Err(Halt::Full) {
-            result = self.quarters(&classes, level, self.capacity.patient, stop);
+            result = self.quarters(&classes, level, self.capacity.patient, meter);
         }
         if result == Err(Halt::Full) {
             for side in sides.iter_mut().filter(|side| **side == Side::Third) {
                 *side = Side::Open;
             }
-            result = self.sweep(&classes, &mut sides, &halves, level, self.capacity.third[1], stop);
+            result = self.sweep(&classes, &mut sides, &halves, level, self.capacity.third[1], meter);
         }
         self.states = halves.iter().map(|half| half.states.len()).max().unwrap_or(1);
         self.prices.classes = classes;
@@ -160,11 +170,21 @@ impl<T: Number> Search<'_, T> {
 
     /// The gap above which nothing is of interest.
     fn cap(&self, level: f64) -> f64 {
-        level.min(self.limit())
+        level.min(self.limit)
     }
 
     fn matters(&self, class: &PricedClass<T>, level: f64) -> bool {
         !self.proved() && class.alternatives[0].loss <= self.cap(level) * (1.0 + 1e-9)
+    }
+
+    /// What the classes that are `open` can give, a step for each of their hulls' edges.
+    fn relief(&self, open: impl Fn(usize) -> bool, meter: &mut Meter<'_>) -> Result<Relief, Halt> {
+        let edges = self.edges.len() as u64;
+        if meter.spend(edges) {
+            Ok(Relief::of(self.prices.lambda, &self.edges, open))
+        } else {
+            Err(Halt::Stopped)
+        }
     }
 
     /// Joins both halves, around a state of the third list if given, and keeps the result where it is better.
@@ -194,7 +214,7 @@ impl<T: Number> Search<'_, T> {
         halves: &[Group<T>; 2],
         level: f64,
         tries: usize,
-        stop: &mut dyn FnMut() -> bool,
+        meter: &mut Meter<'_>,
     ) -> Result<(), Halt> {
         let mut third = Group::new();
         let mut result = Ok(());
@@ -203,8 +223,10 @@ impl<T: Number> Search<'_, T> {
                 continue;
             }
             sides[at] = Side::Third;
-            let relief = Relief::of(self.prices.lambda, outside(classes, sides, Side::Third));
-            result = third.extend(&self.prices, &classes[at], &relief, self.cap(level), tries, stop);
+            let relief = self.relief(|other| sides[other] != Side::Third, meter);
+            let cap = self.cap(level);
+            result = relief
+                .and_then(|relief| third.extend(&self.prices, &classes[at], &relief, cap, tries, meter));
             if result.is_err() {
                 break;
             }
@@ -212,13 +234,14 @@ impl<T: Number> Search<'_, T> {
         let mut order: Vec<usize> = (0..third.states.len()).collect();
         order.sort_by(|&a, &b| third.states[a].loss.total_cmp(&third.states[b].loss));
         for i in order {
-            if third.states[i].loss > self.limit() || self.proved() {
+            if third.states[i].loss > self.limit || self.proved() {
                 break;
             }
-            self.join(halves, Some((&third, i)));
-            if stop() {
+            let pairs = halves.iter().map(|half| half.states.len() as u64).sum();
+            if !meter.spend(pairs) {
                 return Err(Halt::Stopped);
             }
+            self.join(halves, Some((&third, i)));
         }
         if self.proved() { Ok(()) } else { result }
     }
@@ -229,24 +252,22 @@ impl<T: Number> Search<'_, T> {
         classes: &[PricedClass<T>],
         level: f64,
         work_limit: u64,
-        stop: &mut dyn FnMut() -> bool,
+        meter: &mut Meter<'_>,
     ) -> Result<(), Halt> {
         let matter = classes.iter().take_while(|class| self.matters(class, level)).count();
         let sides: Vec<usize> = (0..classes.len()).map(|at| if at < matter { at % 4 } else { 4 }).collect();
         let mut groups = [Group::new(), Group::new(), Group::new(), Group::new()];
         for at in 0..matter {
             let side = sides[at];
-            let open = (0..classes.len())
-                .filter(|&other| other > at || sides[other] != side)
-                .map(|other| &classes[other]);
-            let relief = Relief::of(self.prices.lambda, open);
+            let open = |other: usize| other > at || sides[other] != side;
+            let relief = self.relief(open, meter)?;
             groups[side].extend(
                 &self.prices,
                 &classes[at],
                 &relief,
                 self.cap(level),
                 self.capacity.list,
-                stop,
+                meter,
             )?;
         }
         let [a, b, c, d] = &groups;
@@ -261,7 +282,7 @@ impl<T: Number> Search<'_, T> {
             let floor = if floor < 0.0 { floor } else { limit / 2.0 };
             let to_beat = self.totals.benefit - self.prices.totals.benefit;
             let prices = self.prices.clone();
-            meet(&prices, [&halves[held], &halves[streamed]], floor, limit, to_beat, stop, &mut |x, y| {
+            meet(&prices, [&halves[held], &halves[streamed]], floor, limit, to_beat, meter, &mut |x, y| {
                 let mut choice = self.prices.base.clone();
                 for (pair, half) in [(x, &halves[held]), (y, &halves[streamed])] {
                     half.first.write(pair.at[0] as usize, &mut choice);
@@ -278,7 +299,7 @@ impl<T: Number> Search<'_, T> {
     /// What is left once every choice with a gap up to `level` is known.
     fn settle(&mut self, level: f64) {
         let above = (level * (1.0 + 1e-10)).max(f64::MIN_POSITIVE);
-        let rest = if level >= self.limit() { self.totals.benefit } else { self.prices.benefit_at(above) };
+        let rest = if level >= self.limit { self.totals.benefit } else { self.prices.benefit_at(above) };
         self.bound = self.bound.min(rest);
     }
 
@@ -290,7 +311,7 @@ impl<T: Number> Search<'_, T> {
 
     /// The largest gap up to `level`, and worth a look, that a choice can have.
     fn next_level(&self, level: f64) -> f64 {
-        let beyond = self.prices.benefit_at(level.min(self.limit()) * (1.0 + 1e-10));
+        let beyond = self.prices.benefit_at(level.min(self.limit) * (1.0 + 1e-10));
         self.prices.gap(beyond + self.prices.benefit_step).max(self.prices.gap(self.bound))
     }
 }
@@ -304,30 +325,24 @@ enum Side {
     Third,
 }
 
-fn outside<'a, T>(
-    classes: &'a [PricedClass<T>],
-    sides: &'a [Side],
-    side: Side,
-) -> impl Iterator<Item = &'a PricedClass<T>> + Clone {
-    classes.iter().zip(sides).filter(move |&(_, &other)| other != side).map(|(class, _)| class)
-}
-
 fn search<T: Number>(
     ledger: &Ledger<'_, T>,
-    quick: Solution,
+    quick: Quick,
     capacity: Capacity,
-    stop: &mut dyn FnMut() -> bool,
+    meter: &mut Meter<'_>,
 ) -> Solution {
-    let Some(relaxation) = relax(ledger) else { return quick };
+    let Some(relaxation) = quick.relaxation else { return quick.solution };
     let prices = Prices::new(ledger, relaxation);
-    let totals = ledger.totals(&quick.choice);
+    let edges = Edges::of(&prices.classes);
+    let totals = ledger.totals(&quick.solution.choice);
     let linear = prices.benefit_at(0.0);
     let bound = surcharge::bound(&prices).map_or(linear, |bound| bound.min(linear));
-    let mut search =
-        Search { ledger, prices, choice: quick.choice.clone(), totals, bound, capacity, states: 1 };
+    let choice = quick.solution.choice;
+    let mut search = Search { ledger, prices, edges, choice, totals, limit: 0.0, bound, capacity, states: 1 };
+    search.limit = search.gap_to_beat();
     let mut level = search.next_level(first_level(&search));
     while !search.proved() {
-        if search.explore(level, stop).is_err() {
+        if search.explore(level, meter).is_err() {
             break;
         }
         search.settle(level);
@@ -335,7 +350,8 @@ fn search<T: Number>(
     }
     let bound = search.bound.to_f64_up(ledger.benefit_unit);
     let bound = if search.proved() { UpperBound::Met(bound) } else { UpperBound::Open(bound) };
-    ledger.solution(search.choice, search.totals, quick.lambda, bound)
+    let solution = ledger.solution(search.choice, search.totals, quick.solution.lambda, bound);
+    Solution { steps: quick.solution.steps + meter.made(), ..solution }
 }
 
 fn first_level<T: Number>(search: &Search<'_, T>) -> f64 {
@@ -383,7 +399,7 @@ mod tests {
             });
             let instance = Instance::new(budget.into(), items).expect("a valid instance");
             let capacity = Capacity { list, third: [third, 4], held, eager: held, patient: 10 * held };
-            let solution = exact_within(&instance, capacity, &mut || false);
+            let solution = solve(&instance, capacity, u64::MAX, &mut || false);
             let best = best_of_all(&classes, budget);
             prop_assert_eq!(solution.feasible, best.is_some());
             let Some(best) = best.map(f64::from) else { return Ok(()) };
@@ -400,7 +416,7 @@ mod tests {
                 .map(|k| Item { cost: f64::from(k * i % 97), benefit: f64::from(k * i % 97) * 1.5 })
         };
         let instance = Instance::new(1001.5, (1..60).map(class)).expect("a valid instance");
-        let stopped = exact_within(&instance, Capacity { list: 3, ..Capacity::default() }, &mut || true);
+        let stopped = solve(&instance, Capacity { list: 3, ..Capacity::default() }, u64::MAX, &mut || true);
         let proved = exact(&instance, &mut || false);
         assert!(proved.optimal);
         assert!(stopped.benefit <= proved.benefit && stopped.upper_bound >= Some(proved.benefit));

@@ -7,6 +7,7 @@
 
 use super::super::dyadic::Number;
 use super::super::ledger::Totals;
+use super::super::meter::Meter;
 use super::group::{Group, Halt};
 use super::prices::Prices;
 
@@ -43,36 +44,37 @@ impl<'a, T: Number> Half<'a, T> {
         count
     }
 
-    /// Calls `visit` with every combination of loss above `floor` and up to the limit, which `visit` returns anew after each row.
+    /// Calls `visit` with every combination of loss above `floor` and up to the limit, which `row` returns anew after each row of so many
+    /// combinations.
     fn stream(
         &self,
         floor: f64,
         limit: f64,
         mut visit: impl FnMut(Pair<T>),
-        mut row: impl FnMut() -> Result<f64, Halt>,
+        mut row: impl FnMut(u64) -> Result<f64, Halt>,
     ) -> Result<(), Halt> {
         let mut limit = limit;
         let second: Vec<_> = self.by_loss[1].iter().map(|&b| (b, self.second.states[b as usize])).collect();
         for &a in &self.by_loss[0] {
             let state = self.first.states[a as usize];
             let start = second.partition_point(|(_, other)| other.loss + state.loss <= floor);
-            for (b, other) in &second[start..] {
-                if other.loss + state.loss > limit {
-                    break;
-                }
+            let within = second[start..].iter().take_while(|(_, other)| other.loss + state.loss <= limit);
+            let mut combinations = 0;
+            for (b, other) in within {
+                combinations += 1;
                 let totals = Totals { cost: state.cost + other.cost, benefit: state.benefit + other.benefit };
                 visit(Pair { totals, at: [a, *b] });
             }
-            limit = limit.min(row()?);
+            limit = limit.min(row(combinations)?);
         }
         Ok(())
     }
 
     /// All undominated combinations of loss up to `limit`, by cost.
-    fn list(&self, limit: f64, stop: &mut dyn FnMut() -> bool) -> Result<Vec<Pair<T>>, Halt> {
+    fn list(&self, limit: f64, meter: &mut Meter<'_>) -> Result<Vec<Pair<T>>, Halt> {
         let mut pairs = Vec::new();
-        let poll = || if stop() { Err(Halt::Stopped) } else { Ok(limit) };
-        self.stream(-1.0, limit, |pair| pairs.push(pair), poll)?;
+        let row = |made| if meter.spend(made) { Ok(limit) } else { Err(Halt::Stopped) };
+        self.stream(-1.0, limit, |pair| pairs.push(pair), row)?;
         pairs.sort_unstable_by(|a, b| {
             a.totals.cost.cmp(&b.totals.cost).then(b.totals.benefit.cmp(&a.totals.benefit))
         });
@@ -169,10 +171,10 @@ pub(super) fn meet<T: Number>(
     floor: f64,
     limit: f64,
     to_beat: T,
-    stop: &mut dyn FnMut() -> bool,
+    meter: &mut Meter<'_>,
     found: &mut Found<'_, T>,
 ) -> Result<(), Halt> {
-    let pairs = held.list(limit / 2.0, stop)?;
+    let pairs = held.list(limit / 2.0, meter)?;
     if pairs.is_empty() {
         return Ok(());
     }
@@ -190,6 +192,6 @@ pub(super) fn meet<T: Number>(
             best.set(found(other, &pair));
         }
     };
-    let row = || if stop() { Err(Halt::Stopped) } else { Ok(best.get().1) };
+    let row = |made| if meter.spend(made) { Ok(best.get().1) } else { Err(Halt::Stopped) };
     streamed.stream(floor, limit, visit, row)
 }

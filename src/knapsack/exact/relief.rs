@@ -14,12 +14,34 @@ pub(super) struct Relief {
 /// Relative rounding that a sum over all edges cannot exceed; bounds are lowered by it.
 const ROUNDING: f64 = 1e-12;
 
+/// The hull edges of all classes, each with the index of its class, by loss per cost: sorted once for every [`Relief`].
+#[derive(Clone, Debug)]
+pub(super) struct Edges {
+    up: Vec<(usize, Edge)>,
+    down: Vec<(usize, Edge)>,
+}
+
+impl Edges {
+    pub fn of<T>(classes: &[PricedClass<T>]) -> Self {
+        let sorted = |edges: fn(&PricedClass<T>) -> &[Edge]| {
+            let all = classes.iter().enumerate();
+            let mut all: Vec<_> =
+                all.flat_map(|(at, class)| edges(class).iter().map(move |&edge| (at, edge))).collect();
+            all.sort_by(|(_, a), (_, b)| (a.loss / a.cost).total_cmp(&(b.loss / b.cost)));
+            all
+        };
+        Self { up: sorted(|class| &class.up), down: sorted(|class| &class.down) }
+    }
+
+    pub fn len(&self) -> usize {
+        self.up.len() + self.down.len()
+    }
+}
+
 impl Relief {
-    /// Of the classes that `open` yields, at price `lambda`.
-    pub fn of<'a, T: 'a>(lambda: f64, open: impl Iterator<Item = &'a PricedClass<T>> + Clone) -> Self {
-        let up = open.clone().flat_map(|class| class.up.iter().copied());
-        let down = open.flat_map(|class| class.down.iter().copied());
-        Self { lambda, up: cumulative(up), down: cumulative(down) }
+    /// Of the classes that are `open`, at price `lambda`.
+    pub fn of(lambda: f64, edges: &Edges, open: impl Fn(usize) -> bool) -> Self {
+        Self { lambda, up: cumulative(&edges.up, &open), down: cumulative(&edges.down, &open) }
     }
 
     /// A reader for rooms that mostly shrink from call to call.
@@ -38,13 +60,13 @@ impl Relief {
     }
 }
 
-fn cumulative(edges: impl Iterator<Item = Edge>) -> Vec<Edge> {
-    let mut edges: Vec<Edge> = edges.collect();
-    edges.sort_by(|a, b| (a.loss / a.cost).total_cmp(&(b.loss / b.cost)));
-    let mut sums = vec![Edge { cost: 0.0, loss: 0.0 }];
-    for edge in edges {
-        let last = sums[sums.len() - 1];
-        sums.push(Edge { cost: last.cost + edge.cost, loss: last.loss + edge.loss });
+fn cumulative(edges: &[(usize, Edge)], open: impl Fn(usize) -> bool) -> Vec<Edge> {
+    let mut sum = Edge { cost: 0.0, loss: 0.0 };
+    let mut sums = Vec::with_capacity(edges.len() + 1);
+    sums.push(sum);
+    for (_, edge) in edges.iter().filter(|&&(class, _)| open(class)) {
+        sum = Edge { cost: sum.cost + edge.cost, loss: sum.loss + edge.loss };
+        sums.push(sum);
     }
     sums
 }

@@ -121,7 +121,7 @@ impl<T: Number> Surcharges<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::greedy::relax;
+    use super::super::super::greedy::{Effort, quick};
     use super::super::super::ledger::{Grids, Ledger};
     use super::super::super::{Instance, Item};
     use super::*;
@@ -145,7 +145,7 @@ mod tests {
             let best = sums.iter().filter(|sum| sum.0 <= f64::from(budget)).map(|sum| sum.1).fold(-1.0, f64::max);
             let instance = Instance::new(budget.into(), &rows).expect("a valid instance");
             let ledger = Ledger::<i64>::new(&instance, Grids::of(&instance));
-            let Some(relaxation) = relax(&ledger) else { return Ok(()) };
+            let Some(relaxation) = quick(&instance, Effort::TEXTBOOK).relaxation else { return Ok(()) };
             if let Some(bound) = bound(&Prices::new(&ledger, relaxation)) {
                 prop_assert!(bound.to_f64(ledger.benefit_unit) >= best);
             }
