@@ -2,7 +2,7 @@
 //! the view. `stream` is a streaming read of 16 bytes per object, the yardstick of the others.
 
 use std::hint::black_box;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::{DVec3, Quat, Vec2, Vec3, Vec3A};
@@ -154,5 +154,60 @@ fn update(c: &mut Criterion) {
     }
 }
 
+/// Tenth percentile of several timings each, the contestants taking turns.
+fn interleaved(rounds: usize, contestants: &mut [&mut dyn FnMut()]) -> Vec<f64> {
+    let mut times = vec![Vec::new(); contestants.len()];
+    for _ in 0..rounds {
+        for (run, times) in contestants.iter_mut().zip(&mut times) {
+            let start = Instant::now();
+            run();
+            times.push(start.elapsed().as_secs_f64());
+        }
+    }
+    times.iter_mut().for_each(|t| t.sort_by(f64::total_cmp));
+    times.iter().map(|t| t[t.len() / 10]).collect()
+}
+
+/// The tree against a streaming read of 16 bytes per object and against obvhs, a million objects, in one run.
+fn ratios(_: &mut Criterion) {
+    let objects = 1_000_000;
+    let mut city = city(objects);
+    let mut tree = BlockTree::new();
+    tree.update(&mut city);
+    let spheres = spheres(&city);
+    let bvh = hierarchy(&spheres);
+    let stream = vec![[1u32; 4]; objects as usize];
+    for percent in [20.0, 2.0] {
+        let lens = view(objects, percent).lens(DVec3::ZERO);
+        let aabb = box_of_view(objects, percent);
+        let (mut visible, mut indices) = (Vec::new(), Vec::new());
+        let options = CullOptions::default();
+        let times = interleaved(
+            40,
+            &mut [
+                &mut || {
+                    let xor = |s: [u32; 4], x: &[u32; 4]| [0, 1, 2, 3].map(|i| s[i] ^ x[i]);
+                    black_box(black_box(&stream).iter().fold([0; 4], xor));
+                },
+                &mut || {
+                    black_box(tree.cull(&city, black_box(&lens), &options, &mut visible));
+                },
+                &mut || traverse(&bvh, &spheres, black_box(&lens), aabb, &mut indices),
+            ],
+        );
+        let warm = interleaved(
+            40,
+            &mut [&mut || {
+                black_box(tree.cull(&city, black_box(&lens), &options, &mut visible));
+            }],
+        );
+        println!("warm {percent} us {:.1}", warm[0] * 1e6);
+        println!("cull{percent}_vs_stream {:.3}", times[1] / times[0]);
+        println!("cull{percent}_vs_obvhs {:.1}", times[2] / times[1]);
+        println!("{percent} us {:.1} {:?}", times[1] * 1e6, tree.cull(&city, &lens, &options, &mut visible));
+    }
+}
+
 criterion_group!(benches, cull, update);
-criterion_main!(benches);
+criterion_group! { name = figures; config = Criterion::default(); targets = ratios }
+criterion_main!(figures, benches);

@@ -120,6 +120,13 @@ impl Settings {
         table.narrowed(self.resident)
     }
 
+    /// Whether the selection may leave out an object with a table of `levels` levels: where skipping is allowed and
+    /// neither force, clamp nor residency rules out the coarsest level.
+    pub fn may_be_left_out(&self, levels: usize) -> bool {
+        let coarsest = || self.allowed(levels).coarsest.index() + 1 == levels;
+        self.may_skip && self.forced.is_none() && coarsest()
+    }
+
     fn broken_rule(&self) -> Option<&'static str> {
         let is_factor = |x: f32| x.is_finite() && x > 0.0;
         if !(self.importance.is_finite() && self.importance >= 0.0) {
@@ -145,6 +152,11 @@ impl Settings {
         } else {
             None
         }
+    }
+
+    /// Whether culling has to look beyond the hot columns for this object.
+    fn is_adjusted(&self) -> bool {
+        self.bias != 1.0 || self.cost_multiplier != 1.0 || self.draw_distance < f32::INFINITY
     }
 
     /// Whether a stage has to look beyond the hot columns for this object.
@@ -198,6 +210,10 @@ pub struct Block {
     pub live: u16,
     /// Bit per slot: its settings say more than importance.
     pub special: u16,
+    /// Bit per slot: its bias, cost multiplier or draw distance is not the default.
+    pub adjusted: u16,
+    /// Bit per slot: the selection may leave it out ([`Settings::may_be_left_out`]).
+    pub skippable: u16,
 }
 
 impl Block {
@@ -210,6 +226,8 @@ impl Block {
         table: [0; BLOCK],
         live: 0,
         special: 0,
+        adjusted: 0,
+        skippable: 0,
     };
 
     /// The bound in one lane.
@@ -267,16 +285,18 @@ impl Objects {
 
     /// Moves the origin and re-expresses every bound relative to it, so that everything stays where it is in the
     /// world. Decisions stay the same as far as the bounds do: exactly, where the shift is a multiple of a bound's
-    /// last place.
+    /// last place. A bound that a shift makes too large for its numbers is broken from then on.
     pub fn shift_origin(&mut self, origin: DVec3) {
         let shift = self.origin - origin;
         self.origin = origin;
         self.revision += 1;
-        for block in &mut self.blocks {
+        self.broken_bounds = 0;
+        for (block, cold) in self.blocks.iter_mut().zip(self.cold.chunks(BLOCK)) {
             let columns = [(&mut block.x, shift.x), (&mut block.y, shift.y), (&mut block.z, shift.z)];
             for (column, by) in columns {
                 column.iter_mut().for_each(|c| *c = (f64::from(*c) + by) as f32);
             }
+            self.broken_bounds += renew_live(block, cold);
         }
         self.block_revisions.fill(self.revision);
     }
@@ -361,6 +381,7 @@ impl Objects {
             return Err(ObjectError::of(id, "its table is unknown"));
         }
         self.blocks[slot / BLOCK].table[slot % BLOCK] = table.0;
+        self.write_settings(slot, self.cold[slot].settings);
         self.touch(slot);
         Ok(())
     }
@@ -522,10 +543,24 @@ impl Objects {
         self.cold[slot].settings = settings;
         let (block, lane) = (&mut self.blocks[slot / BLOCK], slot % BLOCK);
         block.gain[lane] = settings.importance * (settings.bias * settings.bias);
+        let levels = self.tables[usize::from(block.table[lane])].levels().len();
         set_bit(&mut block.special, lane, settings.is_special());
+        set_bit(&mut block.adjusted, lane, settings.is_adjusted());
+        set_bit(&mut block.skippable, lane, settings.may_be_left_out(levels));
         let live = !settings.hidden && block.sphere(lane).is_valid();
         set_bit(&mut block.live, lane, live);
     }
+}
+
+/// Finds out anew which lanes are live, and returns how many of the tenants' bounds are broken.
+fn renew_live(block: &mut Block, cold: &[Cold]) -> usize {
+    let mut broken = 0;
+    for (lane, Cold { id, settings }) in cold.iter().enumerate() {
+        let valid = block.sphere(lane).is_valid();
+        broken += usize::from(id.is_some() && !valid);
+        set_bit(&mut block.live, lane, id.is_some() && valid && !settings.hidden);
+    }
+    broken
 }
 
 fn write_bounds(block: &mut Block, lane: usize, bounds: Sphere) {
@@ -651,6 +686,19 @@ mod tests {
         assert_eq!(forced.allowed(5), LevelRange::new(4, 4));
         let streamed = Settings { resident: LevelRange::new(3, 3), ..forced };
         assert_eq!(streamed.allowed(5), LevelRange::new(3, 3));
+    }
+
+    #[test]
+    fn a_shift_that_overflows_a_bound_breaks_it() {
+        let mut store = store(3);
+        let hidden = Settings { hidden: true, ..Settings::default() };
+        store.set_settings(ObjectId(1), hidden).expect("a known id");
+        store.shift_origin(DVec3::X * 1e300);
+        assert_eq!((store.blocks()[0].live, store.broken_bounds()), (0, 3));
+        for id in 0..3 {
+            store.set_bounds(ObjectId(id), ball(0.0)).expect("a known id");
+        }
+        assert_eq!((store.blocks()[0].live, store.broken_bounds()), (0b101, 0));
     }
 
     #[test]

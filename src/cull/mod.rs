@@ -30,12 +30,14 @@
 //! U. Assarsson and T. Möller ("Optimized view frustum culling algorithms for bounding boxes", 2000). Here the size
 //! and the draw distance are tests like the planes, settled in the same mask.
 
+mod boxes;
 mod lanes;
 mod linear;
 mod node;
 mod order;
 mod traverse;
 mod tree;
+mod value;
 
 #[cfg(feature = "bvh")]
 mod bvh;
@@ -44,8 +46,9 @@ mod morton;
 
 use std::ops::AddAssign;
 
-pub use linear::linear;
+pub use linear::{linear, linear_above};
 pub use tree::{BlockTree, UpdateReport};
+pub use value::ValueFloor;
 
 /// The visible objects of one block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,6 +85,9 @@ pub struct CullReport {
     pub too_small: u64,
     /// Objects left out for their draw distance, counted like `too_small`; an object that is both counts here.
     pub too_far: u64,
+    /// Objects passed over because drawing them is worth less than the floor, counted like `too_small`; an object that
+    /// is too far or too small counts there.
+    pub worth_too_little: u64,
 }
 
 impl AddAssign for CullReport {
@@ -93,5 +99,6 @@ impl AddAssign for CullReport {
         self.visible += other.visible;
         self.too_small += other.too_small;
         self.too_far += other.too_far;
+        self.worth_too_little += other.worth_too_little;
     }
 }

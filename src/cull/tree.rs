@@ -1,9 +1,9 @@
 //! An implicit tree over the blocks, and keeping it up to date.
 
-use std::ops::Range;
-
-use super::node::Node;
+use super::boxes::Boxes;
+use super::node::{Limits, Node};
 use super::order::Arranger;
+use super::value::KeptSlopes;
 use crate::scene::Objects;
 
 /// Children of a node. 4 to 16 are sensible: fewer make the tree higher, more make its boxes coarser.
@@ -32,8 +32,8 @@ const REST: u32 = 32;
 /// without it, until [`BlockTree::shrink`].
 #[derive(Clone, Default)]
 pub struct BlockTree {
-    /// The nodes, level by level; node `i` of a level is over nodes `8 i .. 8 i + 8` of the level before.
-    levels: Vec<Vec<Node>>,
+    /// Node `i` of a level is over nodes `8 i .. 8 i + 8` of the level before.
+    levels: Vec<Siblings>,
     /// Live bits per block: what accepting a subtree copies.
     live: Vec<u16>,
     /// The revision of the objects that the nodes stand for.
@@ -42,8 +42,44 @@ pub struct BlockTree {
     ordered_area: Option<f32>,
     /// Updates with changes since the last order.
     since_order: u32,
+    /// The slopes that the nodes' worth is kept at.
+    slopes: KeptSlopes,
     arranger: Arranger,
     stale: Vec<u32>,
+}
+
+/// The nodes of a level: their boxes in groups of siblings, and what else is known of them, which is only looked at
+/// where a limit is open.
+#[derive(Clone, Default)]
+struct Siblings {
+    boxes: Vec<Boxes>,
+    limits: Vec<Limits>,
+}
+
+impl Siblings {
+    fn node(&self, index: usize) -> Node {
+        Node { aabb: self.boxes[index / FAN_OUT].get(index % FAN_OUT), limits: self.limits[index] }
+    }
+
+    fn set(&mut self, index: usize, node: &Node) {
+        self.boxes[index / FAN_OUT].set(index % FAN_OUT, &node.aabb);
+        self.limits[index] = node.limits;
+    }
+
+    /// The node over group `group`.
+    fn over(&self, group: usize) -> Node {
+        let nodes = group * FAN_OUT..((group + 1) * FAN_OUT).min(self.limits.len());
+        nodes.fold(Node::EMPTY, |node, index| node.union(&self.node(index)))
+    }
+
+    /// Makes room for so many nodes; new ones are empty.
+    fn resize(&mut self, len: usize) {
+        for index in len..self.limits.len() {
+            self.set(index, &Node::EMPTY);
+        }
+        self.limits.resize(len, Node::EMPTY.limits);
+        self.boxes.resize(len.div_ceil(FAN_OUT), Boxes::EMPTY);
+    }
 }
 
 /// What an update did.
@@ -100,13 +136,21 @@ impl BlockTree {
         self.levels.len().saturating_sub(1)
     }
 
-    pub(super) fn node(&self, level: usize, index: usize) -> &Node {
-        &self.levels[level][index]
+    pub(super) fn boxes(&self, level: usize, group: usize) -> &Boxes {
+        &self.levels[level].boxes[group]
     }
 
-    /// The nodes of the level below that a node is over.
-    pub(super) fn children(&self, level: usize, index: usize) -> Range<usize> {
-        children(&self.levels[level - 1], index)
+    pub(super) fn limits(&self, level: usize, index: usize) -> &Limits {
+        &self.levels[level].limits[index]
+    }
+
+    /// How many nodes there are in a group.
+    pub(super) fn siblings(&self, level: usize, group: usize) -> usize {
+        FAN_OUT.min(self.levels[level].limits.len() - group * FAN_OUT)
+    }
+
+    pub(super) fn slopes(&self) -> &KeptSlopes {
+        &self.slopes
     }
 
     pub(super) fn live(&self) -> &[u16] {
@@ -114,7 +158,7 @@ impl BlockTree {
     }
 
     fn area(&self) -> f32 {
-        self.levels.last().and_then(|top| top.first()).map_or(0.0, |root| root.area)
+        self.levels.last().and_then(|top| top.limits.first()).map_or(0.0, |root| root.area)
     }
 
     fn is_disordered(&self, objects: &Objects) -> bool {
@@ -128,7 +172,7 @@ impl BlockTree {
     }
 
     fn order(&mut self, objects: &mut Objects) {
-        objects.reorder(self.arranger.arrange(objects));
+        objects.reorder(self.arranger.arrange(objects, &self.slopes));
         self.since_order = 0;
     }
 
@@ -138,7 +182,8 @@ impl BlockTree {
         self.find_stale(objects);
         let refitted = self.stale.len();
         for &index in &self.stale {
-            self.levels[0][index as usize] = Node::of_block(objects, index as usize);
+            let node = Node::of_block(objects, index as usize, &self.slopes);
+            self.levels[0].set(index as usize, &node);
             self.live[index as usize] = objects.blocks()[index as usize].live;
         }
         for level in 1..self.levels.len() {
@@ -160,10 +205,8 @@ impl BlockTree {
 
     fn refit_level(&mut self, level: usize) {
         let (below, above) = self.levels.split_at_mut(level);
-        let below = &below[level - 1];
         for &index in &self.stale {
-            let nodes = &below[children(below, index as usize)];
-            above[0][index as usize] = nodes.iter().fold(Node::EMPTY, |node, child| node.union(child));
+            above[0].set(index as usize, &below[level - 1].over(index as usize));
         }
     }
 
@@ -173,9 +216,9 @@ impl BlockTree {
         let (mut level, mut len) = (0, blocks);
         loop {
             if level == self.levels.len() {
-                self.levels.push(Vec::new());
+                self.levels.push(Siblings::default());
             }
-            self.levels[level].resize(len, Node::EMPTY);
+            self.levels[level].resize(len);
             level += 1;
             if len <= 1 {
                 break;
@@ -184,10 +227,6 @@ impl BlockTree {
         }
         self.levels.truncate(level);
     }
-}
-
-fn children(below: &[Node], index: usize) -> Range<usize> {
-    index * FAN_OUT..((index + 1) * FAN_OUT).min(below.len())
 }
 
 fn is_worth_ordering(objects: &Objects) -> bool {
