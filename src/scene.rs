@@ -239,8 +239,8 @@ impl Block {
 /// All objects and their tables.
 ///
 /// Objects live in *slots*: slot `s` is lane `s % 16` of block `s / 16`. Slots are an arrangement for speed; they
-/// change when [`Objects::reorder`] is called. Ids do not. Removal leaves a hole, insertion appends or fills a hole
-/// near the end, and a reorder closes the holes.
+/// change when [`Objects::reorder`] or [`Objects::relocate`] is called. Ids do not. Removal leaves a hole, insertion
+/// appends, or fills a hole where a quarter of the slots are holes, and a reorder closes the holes.
 ///
 /// Every change raises [`Objects::revision`], so that whoever keeps something per slot can see what to renew.
 #[derive(Clone, Debug, Default)]
@@ -249,14 +249,18 @@ pub struct Objects {
     tables: Vec<LodTable>,
     blocks: Vec<Block>,
     cold: Vec<Cold>,
+    /// Per block, a bit per slot: it has a tenant.
+    occupied: Vec<u16>,
     slots: HashMap<ObjectId, u32, BuildHasherDefault<IdHasher>>,
-    holes: usize,
     appended: usize,
+    /// The block where a hole was last looked for.
+    cursor: usize,
     broken_bounds: usize,
     revision: u64,
     layout_revision: u64,
     block_revisions: Vec<u64>,
-    /// Where objects wait while [`Objects::reorder`] writes the slots anew; empty between calls.
+    block_layout_revisions: Vec<u64>,
+    /// Where objects wait while their slots are written anew; empty between calls.
     moving: Vec<Object>,
 }
 
@@ -328,25 +332,18 @@ impl Objects {
             return Err(ObjectError::of(object.id, "the id is in use"));
         }
         let slot = self.free_slot();
-        self.slots.insert(object.id, slot as u32);
+        self.appended += 1;
         self.write(slot, &object);
-        self.revision += 1;
-        self.layout_revision = self.revision;
-        self.block_revisions[slot / BLOCK] = self.revision;
+        self.touch_layout(slot);
         Ok(())
     }
 
     /// Takes an object out and returns it; `None` when there is none of that id.
     pub fn remove(&mut self, id: ObjectId) -> Option<Object> {
         let slot = self.slots.remove(&id)? as usize;
-        let object = self.read(slot)?;
-        self.broken_bounds -= usize::from(!object.bounds.is_valid());
-        self.cold[slot].id = None;
-        self.blocks[slot / BLOCK].live &= !(1 << (slot % BLOCK));
-        self.holes += 1;
-        self.touch(slot);
-        self.layout_revision = self.revision;
-        Some(object)
+        let object = self.vacate(slot);
+        self.touch_layout(slot);
+        object
     }
 
     /// The object of that id.
@@ -450,9 +447,19 @@ impl Objects {
         &self.block_revisions
     }
 
+    /// Per block, the revision at which an object last came into, went from or changed its slot in it.
+    pub fn block_layout_revisions(&self) -> &[u64] {
+        &self.block_layout_revisions
+    }
+
+    /// Per block, a bit per slot: an object lives in it.
+    pub fn occupied(&self) -> &[u16] {
+        &self.occupied
+    }
+
     /// How many slots are out of order: holes, and objects that came after the last [`Objects::reorder`].
     pub fn disorder(&self) -> usize {
-        self.holes + self.appended
+        self.holes() + self.appended
     }
 
     /// Re-arranges the slots: the object in slot `order[i]` moves to slot `i`. Holes are closed. Decisions do not
@@ -463,24 +470,46 @@ impl Objects {
     pub fn reorder(&mut self, order: &[u32]) {
         assert_eq!(order.len(), self.len(), "an order names every occupied slot once");
         let mut objects = std::mem::take(&mut self.moving);
-        objects.extend(order.iter().filter_map(|&slot| self.read(slot as usize)));
-        assert_eq!(objects.len(), order.len(), "an order names occupied slots only");
-        self.blocks.clear();
-        self.cold.clear();
-        self.block_revisions.clear();
-        self.holes = 0;
-        self.broken_bounds = 0;
+        objects.extend(order.iter().filter_map(|&slot| self.vacate(slot as usize)));
+        assert_eq!(objects.len(), order.len(), "an order names occupied slots, and none twice");
+        self.truncate(0);
         self.revision += 1;
         self.layout_revision = self.revision;
         for (slot, object) in objects.drain(..).enumerate() {
             self.push_slot();
             self.write(slot, &object);
-            self.slots.insert(object.id, slot as u32);
         }
         self.moving = objects;
-        assert_eq!(self.slots.len(), order.len(), "an order names no slot twice");
         self.block_revisions.fill(self.revision);
+        self.block_layout_revisions.fill(self.revision);
         self.appended = 0;
+    }
+
+    /// Moves the object in slot `from[i]` to slot `to[i]`, for all `i` at once; slots beyond the end are made, and
+    /// holes at the end given up. Decisions do not depend on it. Allocates nothing for as many objects and slots as
+    /// there were before.
+    ///
+    /// # Panics
+    /// `from` must name occupied slots, `to` holes or slots in `from`, as many, and neither one twice.
+    pub fn relocate(&mut self, from: &[u32], to: &[u32]) {
+        assert_eq!(from.len(), to.len(), "every object goes to one slot");
+        let mut objects = std::mem::take(&mut self.moving);
+        for &slot in from {
+            objects.extend(self.vacate(slot as usize));
+            self.touch_layout(slot as usize);
+        }
+        assert_eq!(objects.len(), from.len(), "only occupied slots can be left, and only once");
+        for (object, &slot) in objects.drain(..).zip(to) {
+            while self.cold.len() <= slot as usize {
+                self.push_slot();
+            }
+            assert!(self.id_of(slot as usize).is_none(), "slot {slot} is taken");
+            self.write(slot as usize, &object);
+            self.touch_layout(slot as usize);
+        }
+        self.moving = objects;
+        let last = self.occupied.iter().rposition(|&lanes| lanes != 0);
+        self.truncate(last.map_or(0, |block| (block + 1) * BLOCK));
     }
 
     fn check(&self, object: &Object) -> Result<(), ObjectError> {
@@ -502,30 +531,71 @@ impl Objects {
         self.block_revisions[slot / BLOCK] = self.revision;
     }
 
-    /// A hole in the last block, or a new slot at the end.
+    fn touch_layout(&mut self, slot: usize) {
+        self.touch(slot);
+        self.layout_revision = self.revision;
+        self.block_layout_revisions[slot / BLOCK] = self.revision;
+    }
+
+    fn holes(&self) -> usize {
+        self.cold.len() - self.slots.len()
+    }
+
+    /// A hole where a quarter of the slots are holes, else one in the last block or a new slot at the end.
     fn free_slot(&mut self) -> usize {
-        self.appended += 1;
-        let last = self.cold.len() / BLOCK * BLOCK;
-        match (last..self.cold.len()).find(|&slot| self.cold[slot].id.is_none()) {
-            Some(slot) => {
-                self.holes -= 1;
-                slot
-            }
-            None => self.push_slot(),
+        if self.holes() * 4 > self.cold.len() {
+            self.cursor = self.next_loose_block();
+        } else {
+            self.cursor = self.blocks.len().saturating_sub(1);
         }
+        let first = self.cursor * BLOCK;
+        let lanes = BLOCK.min(self.cold.len() - first.min(self.cold.len()));
+        let hole = (first..first + lanes).find(|&slot| self.cold[slot].id.is_none());
+        hole.unwrap_or_else(|| self.push_slot())
+    }
+
+    /// The next block with a hole, from the cursor on and around. As many blocks are passed over in a round as there
+    /// are, and a quarter of the slots filled.
+    fn next_loose_block(&self) -> usize {
+        let blocks = self.occupied.len();
+        let from = self.cursor.min(blocks);
+        let loose = |&block: &usize| self.occupied[block] != u16::MAX;
+        (from..blocks).chain(0..from).find(loose).unwrap_or(blocks.saturating_sub(1))
     }
 
     fn push_slot(&mut self) -> usize {
         if self.cold.len().is_multiple_of(BLOCK) {
             self.blocks.push(Block::EMPTY);
+            self.occupied.push(0);
             self.block_revisions.push(self.revision);
+            self.block_layout_revisions.push(self.revision);
         }
         self.cold.push(Cold { id: None, settings: Settings::default() });
         self.cold.len() - 1
     }
 
+    /// Gives up the slots from `slots` on.
+    fn truncate(&mut self, slots: usize) {
+        let blocks = slots.div_ceil(BLOCK);
+        self.cold.truncate(slots);
+        self.blocks.truncate(blocks);
+        self.occupied.truncate(blocks);
+        self.block_revisions.truncate(blocks);
+        self.block_layout_revisions.truncate(blocks);
+    }
+
+    /// Makes a hole of a slot; its tenant, if there was one.
+    fn vacate(&mut self, slot: usize) -> Option<Object> {
+        let object = self.read(slot)?;
+        self.broken_bounds -= usize::from(!object.bounds.is_valid());
+        self.cold[slot].id = None;
+        set_bit(&mut self.occupied[slot / BLOCK], slot % BLOCK, false);
+        set_bit(&mut self.blocks[slot / BLOCK].live, slot % BLOCK, false);
+        Some(object)
+    }
+
     fn read(&self, slot: usize) -> Option<Object> {
-        let Cold { id, settings } = self.cold[slot];
+        let &Cold { id, settings } = self.cold.get(slot)?;
         let (block, lane) = (&self.blocks[slot / BLOCK], slot % BLOCK);
         Some(Object { id: id?, bounds: block.sphere(lane), table: TableId(block.table[lane]), settings })
     }
@@ -536,6 +606,8 @@ impl Objects {
         write_bounds(block, lane, object.bounds);
         block.table[lane] = object.table.0;
         self.cold[slot].id = Some(object.id);
+        self.slots.insert(object.id, slot as u32);
+        set_bit(&mut self.occupied[slot / BLOCK], lane, true);
         self.write_settings(slot, object.settings);
     }
 

@@ -269,33 +269,101 @@ fn few_objects_are_never_arranged() {
     assert!(!BlockTree::new().update(&mut plain(grid(1, 1.0))).reordered);
 }
 
+/// A thousand objects in a row of towns, each going to a town of its own and staying there.
 #[test]
-fn a_scene_in_full_motion_is_arranged_now_and_then() {
-    let mut objects = plain(grid(20, 1.0));
+fn objects_that_have_moved_away_find_their_neighbours_a_few_at_a_time() {
+    let mut objects = plain(grid(60, 1.0));
     let mut tree = arranged(&mut objects);
     let n = objects.len() as u64;
-    let mut orders = 0;
-    for frame in 0..200 {
-        for id in 0..n {
-            let place = (id * 797 + frame) % n;
-            let center = Vec3::new((place % 41) as f32, 0.0, (place / 41) as f32);
-            objects.set_bounds(ObjectId(id), Sphere::new(center, 0.5)).expect("a known id");
-        }
-        orders += usize::from(tree.update(&mut objects).reordered);
+    let at_home = border(&tree, &objects);
+    for id in (0..n).step_by(40) {
+        let place = (id * 797) % n;
+        let center = Vec3::new((place % 121) as f32 - 60.0, 0.0, (place / 121) as f32 - 60.0);
+        objects.set_bounds(ObjectId(id), Sphere::new(center, 0.5)).expect("a known id");
     }
-    assert!((1..10).contains(&orders), "{orders} orders in 200 frames");
+    let astray = tree.update(&mut objects);
+    assert!(!astray.reordered && astray.objects_repaired > 0 && astray.objects_repaired < n as usize / 2);
+    let mut updates = 1;
+    while tree.update(&mut objects).objects_repaired > 0 {
+        updates += 1;
+        assert!(updates < 100, "repairs come to an end");
+    }
+    assert!(border(&tree, &objects) < 2 * at_home, "{} for {at_home}", border(&tree, &objects));
+    let all: Vec<u64> = (0..n).collect();
+    compare(&tree, &objects, &all, &lens(&square()), CullOptions::default());
+}
+
+/// Objects tested one by one when a quarter of the scene is in view.
+fn border(tree: &BlockTree, objects: &Objects) -> u64 {
+    let view = lens(&square().at(Vec3::Y, Quat::IDENTITY));
+    search(tree, objects, &view, &CullOptions::default()).1.objects_tested
 }
 
 #[test]
-fn holes_are_closed_when_there_are_many() {
+fn a_scene_in_full_motion_is_never_arranged_as_a_whole() {
+    let mut objects = plain(grid(60, 1.0));
+    let mut tree = arranged(&mut objects);
+    let n = objects.len() as u64;
+    for frame in 0..50 {
+        for id in 0..n {
+            let place = (id * 797 + frame) % n;
+            let center = Vec3::new((place % 121) as f32, 0.0, (place / 121) as f32);
+            objects.set_bounds(ObjectId(id), Sphere::new(center, 0.5)).expect("a known id");
+        }
+        let report = tree.update(&mut objects);
+        assert!(!report.reordered && report.objects_repaired < 7000, "{report:?}");
+    }
+}
+
+#[test]
+fn a_store_that_has_doubled_or_is_half_empty_is_arranged() {
     let mut objects = plain(grid(20, 1.0));
     let mut tree = arranged(&mut objects);
-    let blocks = objects.blocks().len();
-    for id in 0..objects.len() as u64 / 5 {
-        objects.remove(ObjectId(id));
-    }
+    let (n, blocks) = (objects.len() as u64, objects.blocks().len());
+    (0..n / 3).for_each(|id| assert!(objects.remove(ObjectId(id)).is_some()));
+    assert!(!tree.update(&mut objects).reordered);
+    (n / 3..n * 3 / 4).for_each(|id| assert!(objects.remove(ObjectId(id)).is_some()));
     assert!(tree.update(&mut objects).reordered);
-    assert!(objects.disorder() == 0 && objects.blocks().len() < blocks);
+    assert!(objects.disorder() == 0 && objects.blocks().len() < blocks / 2);
+    grid(20, 1.0).zip(n..).for_each(|(sphere, id)| insert(&mut objects, id, sphere, Settings::default()));
+    assert!(tree.update(&mut objects).reordered);
+}
+
+#[test]
+fn slots_do_not_pile_up_where_objects_come_and_go() {
+    let mut objects = plain(grid(20, 1.0));
+    let mut tree = arranged(&mut objects);
+    let n = objects.len() as u64;
+    for id in 0..10 * n {
+        assert!(objects.remove(ObjectId(id)).is_some());
+        insert(&mut objects, id + n, ahead((id % 50) as f32), Settings::default());
+        if id % 100 == 0 {
+            assert!(!tree.update(&mut objects).reordered);
+        }
+    }
+    assert!(objects.blocks().len() * BLOCK < 2 * n as usize, "{} blocks", objects.blocks().len());
+}
+
+/// Slopes that change are followed a slice at a time; the answer is right all the way.
+#[test]
+fn new_slopes_are_followed_in_slices() {
+    let mut objects = store(grid(120, 0.5).map(|sphere| (sphere, skippable())));
+    let mut tree = BlockTree::new();
+    tree.expect_slopes(&[1.0, 2.0, 3.0]);
+    tree.update(&mut objects);
+    let all: Vec<u64> = (0..objects.len() as u64).collect();
+    let question = Question { lambda: 3e3, best_slope: vec![5.0, 0.01, 1.0], ..Question::default() };
+    let view = lens(&square().at(Vec3::Z * 80.0, Quat::IDENTITY));
+    tree.expect_slopes(&question.best_slope);
+    let mut slices = 0;
+    loop {
+        compare(&tree, &objects, &all, &view, question.clone());
+        match tree.update(&mut objects).blocks_refitted {
+            0 => break,
+            _ => slices += 1,
+        }
+    }
+    assert!(slices > 1);
 }
 
 #[test]

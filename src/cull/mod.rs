@@ -35,6 +35,7 @@ mod lanes;
 mod linear;
 mod node;
 mod order;
+mod repair;
 mod traverse;
 mod tree;
 mod value;

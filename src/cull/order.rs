@@ -1,6 +1,7 @@
 //! In what order objects are laid into slots.
 
 use std::cmp::Reverse;
+use std::ops::Range;
 
 use super::node::is_tame;
 use super::value::{KeptSlopes, worth};
@@ -38,9 +39,9 @@ enum Kind {
 }
 
 impl Arranger {
-    /// The occupied slots in the order in which they should be arranged. Worth is taken at these slopes.
-    pub fn arrange(&mut self, objects: &Objects, slopes: &KeptSlopes) -> &[u32] {
-        self.rank(objects, slopes);
+    /// The occupied ones of `slots` in the order in which they should be arranged. Worth is taken at these slopes.
+    pub fn arrange(&mut self, objects: &Objects, slots: Range<usize>, slopes: &KeptSlopes) -> &[u32] {
+        self.rank(objects, slots, slopes);
         self.slots.clear();
         for run in self.ranked.chunk_by(|a, b| a.0 == b.0) {
             match run[0].0 {
@@ -56,9 +57,8 @@ impl Arranger {
         &self.slots
     }
 
-    fn rank(&mut self, objects: &Objects, slopes: &KeptSlopes) {
-        let slots = 0..(objects.blocks().len() * BLOCK) as u32;
-        let occupied = slots.filter_map(|slot| Some((objects.id_of(slot as usize)?, slot)));
+    fn rank(&mut self, objects: &Objects, slots: Range<usize>, slopes: &KeptSlopes) {
+        let occupied = slots.filter_map(|slot| Some((objects.id_of(slot)?, slot as u32)));
         self.ranked.clear();
         self.ranked.extend(occupied.map(|(id, slot)| (kind_of(objects, slot, slopes), id, slot)));
         self.ranked.sort_unstable();

@@ -49,7 +49,7 @@ impl BlockTree {
         let cull = Cull::new(objects, lens, options, floor, visible);
         let open = cull.tests();
         let tables = if open & VALUE == 0 { 0 } else { objects.tables().len() };
-        let mut traversal = Traversal { tree: self, ratios: cull.floor.ratios(self.slopes(), tables), cull };
+        let mut traversal = Traversal { tree: self, ratios: self.worth_ratios(&cull.floor, tables), cull };
         if !objects.blocks().is_empty() {
             traversal.visit(self.height(), 0, open);
         }
