@@ -130,9 +130,10 @@ fn is_passed_over(object: &Object, lens: &Lens, question: &Question) -> bool {
     let (radius, gain) = (f64::from(bounds.radius), settings.importance * (settings.bias * settings.bias));
     let worth = radius * radius * f64::from(gain) * f64::from(slope) / f64::from(settings.cost_multiplier);
     let scale = f64::from(lens.scale_px);
-    let value = worth * (std::f64::consts::PI * scale * scale) / (distance * distance);
+    let unit_px2 = std::f64::consts::PI * scale * scale;
     let inside = lens.perspective && lens.distance(bounds.center) <= bounds.radius;
-    settings.may_be_left_out(1) && !inside && question.lambda > 0.0 && value < question.lambda * (1.0 - 4e-6)
+    let least = question.lambda * (1.0 - 4e-6);
+    settings.may_be_left_out(1) && !inside && least > 0.0 && worth * unit_px2 < least * (distance * distance)
 }
 
 fn live(objects: &Objects) -> u64 {

@@ -114,15 +114,18 @@ pub(super) fn length(d: Vec3) -> f32 {
     (d.x * d.x + d.y * d.y + d.z * d.z).sqrt()
 }
 
+/// The positions of the bits of `mask`, ascending.
+pub(super) fn lanes_of(mut mask: u16) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = mask.trailing_zeros() as usize;
+        mask &= mask.wrapping_sub(1);
+        (lane < BLOCK).then_some(lane)
+    })
+}
+
 /// The lanes of `mask` for which `is_so` holds.
-pub(super) fn select(mut mask: u16, mut is_so: impl FnMut(usize) -> bool) -> u16 {
-    let mut selected = 0;
-    while mask != 0 {
-        let lane = mask.trailing_zeros();
-        selected |= u16::from(is_so(lane as usize)) << lane;
-        mask &= mask - 1;
-    }
-    selected
+fn select(mask: u16, is_so: impl Fn(usize) -> bool) -> u16 {
+    lanes_of(mask).fold(0, |selected, lane| selected | u16::from(is_so(lane)) << lane)
 }
 
 /// The lanes that [`Frustum::sees`](crate::view::Frustum::sees), as far as the open planes can tell. Straight loops
@@ -141,17 +144,22 @@ fn in_view(block: &Block, lens: &Lens, open: OpenTests) -> u16 {
 
 /// The lanes whose projected diameter, at a bias of 1, is below `min_size_px`.
 fn small_lanes(block: &Block, lens: &Lens, min_size_px: f32) -> u16 {
-    let mut small = [0; BLOCK];
+    let distances = distances(block, lens);
+    bits(&std::array::from_fn(|lane| {
+        u32::from(size_px(lens, block.radius[lane], distances[lane]) < min_size_px)
+    }))
+}
+
+/// [`Lens::distance`] to every lane's centre.
+pub(super) fn distances(block: &Block, lens: &Lens) -> [f32; BLOCK] {
     let eye = lens.eye;
-    for (lane, small) in small.iter_mut().enumerate() {
+    std::array::from_fn(|lane| {
         let d = Vec3::new(block.x[lane] - eye.x, block.y[lane] - eye.y, block.z[lane] - eye.z);
-        let distance = if lens.perspective { length(d).max(lens.near) } else { 1.0 };
-        *small = u32::from(size_px(lens, block.radius[lane], distance) < min_size_px);
-    }
-    bits(&small)
+        if lens.perspective { length(d).max(lens.near) } else { 1.0 }
+    })
 }
 
 /// Bit per lane from a 0 or 1 per lane.
-fn bits(lanes: &[u32; BLOCK]) -> u16 {
+pub(super) fn bits(lanes: &[u32; BLOCK]) -> u16 {
     lanes.iter().enumerate().fold(0, |mask, (lane, &bit)| mask | bit << lane) as u16
 }

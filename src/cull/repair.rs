@@ -20,12 +20,12 @@ use crate::scene::{BLOCK, Objects};
 /// The level of the tree whose nodes are windows. 1 to 3: larger windows bring more strays home, and take longer.
 const WINDOW: usize = 2;
 
-/// Objects that an update may lay anew whatever it had to do else: under a millisecond of work. From a window's up;
-/// larger keeps better order, smaller takes less time.
-const WORK: usize = 4096;
+/// Objects that an update may lay anew whatever it had to do else, give or take a window: under a millisecond of work.
+/// From 1 up; larger keeps better order, smaller takes less time.
+const WORK: usize = 1024;
 
 /// Blocks that were refitted for each object that may be laid anew beyond [`WORK`]: as much as a quarter of the time.
-const REFITTED_PER_OBJECT: usize = 8;
+const REFITTED_PER_OBJECT: usize = 32;
 
 /// Growth of a window's area, summed over its blocks, at which it is laid out anew. Above 1; smaller keeps boxes tight
 /// while objects move, larger works less often.

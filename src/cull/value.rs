@@ -1,6 +1,6 @@
 //! The value floor: what the selection would leave out anyway need not be rated.
 
-use super::lanes::select;
+use super::lanes::{bits, distances, lanes_of};
 use crate::scene::{BLOCK, Objects};
 use crate::view::Lens;
 
@@ -55,14 +55,18 @@ impl<'a> Floor<'a> {
     /// Whether something of this worth is passed over at a distance as [`Lens::distance`] gives it. Falls with the
     /// worth and rises with the distance, to the last bit.
     pub fn is_above(&self, worth: f64, distance: f32) -> bool {
-        let distance = f64::from(distance);
-        worth * self.unit_px2 / (distance * distance) < self.least
+        worth * self.unit_px2 < self.least_at(distance)
     }
 
     /// Whether everything of at least this worth is kept at that distance.
     pub fn is_below(&self, worth: f64, distance: f32) -> bool {
+        worth == f64::INFINITY || worth * self.unit_px2 >= self.least_at(distance)
+    }
+
+    /// What has to be reached at a distance by what an object is worth at distance 1.
+    fn least_at(&self, distance: f32) -> f64 {
         let distance = f64::from(distance);
-        worth == f64::INFINITY || worth * self.unit_px2 / (distance * distance) >= self.least
+        self.least * (distance * distance)
     }
 
     /// Least and greatest ratio of a slope to the one that the tree keeps of its table, `tables` of them, and a
@@ -78,15 +82,35 @@ impl<'a> Floor<'a> {
         [least * (1.0 - 1e-12), most * (1.0 + 1e-12)]
     }
 
-    /// The lanes of `mask` that are passed over.
+    /// The lanes of `mask` that are passed over. Straight loops over the lanes, which compilers turn into vector code.
     pub fn passes_over(&self, objects: &Objects, index: usize, lens: &Lens, mask: u16) -> u16 {
         let block = &objects.blocks()[index];
-        select(mask & block.skippable, |lane| {
-            let distance = lens.distance(block.sphere(lane).center);
-            let inside = lens.perspective && distance <= block.radius[lane];
-            let slope = self.best_slope.get(usize::from(block.table[lane])).copied();
-            !inside && self.is_above(worth(objects, index, lane, slope), distance)
-        })
+        let mask = mask & block.skippable;
+        if mask == 0 {
+            return 0;
+        }
+        let distances = distances(block, lens);
+        let worth = self.worths(objects, index, mask);
+        let over = std::array::from_fn(|lane| {
+            let outside = !lens.perspective | (distances[lane] > block.radius[lane]);
+            u32::from(outside & self.is_above(worth[lane], distances[lane]))
+        });
+        mask & bits(&over)
+    }
+
+    /// [`worth`] of every lane, of those in `mask` with their cost multiplier; not a number for [`worth`]'s infinity.
+    fn worths(&self, objects: &Objects, index: usize, mask: u16) -> [f64; BLOCK] {
+        let block = &objects.blocks()[index];
+        let slope = |table: u16| self.best_slope.get(usize::from(table)).copied().unwrap_or(f32::NAN);
+        let slopes = block.table.map(slope);
+        let mut worths = std::array::from_fn(|lane| {
+            let radius = f64::from(block.radius[lane]);
+            radius * radius * f64::from(block.gain[lane]) * f64::from(slopes[lane])
+        });
+        for lane in lanes_of(mask & block.adjusted) {
+            worths[lane] /= f64::from(objects.settings(index * BLOCK + lane).cost_multiplier);
+        }
+        worths
     }
 }
 
