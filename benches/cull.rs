@@ -128,7 +128,7 @@ fn cull(c: &mut Criterion) {
 /// A city that grows around its viewer, all of whose objects may be left out, under one floor.
 fn growth(_: &mut Criterion) {
     println!("growth: objects, kept, nodes + blocks looked at, us, in a fixed view under a fixed floor");
-    let lambda = std::env::var("FLOOR").ok().and_then(|x| x.parse().ok()).unwrap_or(2.0);
+    let lambda = std::env::var("FLOOR").ok().and_then(|x| x.parse().ok()).unwrap_or(3.2);
     for objects in [100_000, 300_000, 1_000_000, 3_000_000, 10_000_000] {
         let mut city = city_of(objects, &Settings { may_skip: true, ..Settings::default() });
         let mut tree = BlockTree::new();

@@ -463,23 +463,22 @@ impl Objects {
     }
 
     /// Re-arranges the slots: the object in slot `order[i]` moves to slot `i`. Holes are closed. Decisions do not
-    /// depend on the order, only speed does. Allocates nothing when there are no more objects than at an earlier call.
+    /// depend on the order, only speed does. Takes 100 bytes per object while it works.
     ///
     /// # Panics
     /// `order` must name every occupied slot exactly once.
     pub fn reorder(&mut self, order: &[u32]) {
         assert_eq!(order.len(), self.len(), "an order names every occupied slot once");
-        let mut objects = std::mem::take(&mut self.moving);
+        let mut objects = Vec::with_capacity(order.len());
         objects.extend(order.iter().filter_map(|&slot| self.vacate(slot as usize)));
         assert_eq!(objects.len(), order.len(), "an order names occupied slots, and none twice");
         self.truncate(0);
         self.revision += 1;
         self.layout_revision = self.revision;
-        for (slot, object) in objects.drain(..).enumerate() {
+        for (slot, object) in objects.into_iter().enumerate() {
             self.push_slot();
             self.write(slot, &object);
         }
-        self.moving = objects;
         self.block_revisions.fill(self.revision);
         self.block_layout_revisions.fill(self.revision);
         self.appended = 0;

@@ -33,6 +33,7 @@
 mod boxes;
 mod lanes;
 mod linear;
+mod morton;
 mod node;
 mod order;
 mod repair;
@@ -42,8 +43,6 @@ mod value;
 
 #[cfg(feature = "bvh")]
 mod bvh;
-#[cfg(any(test, not(feature = "bvh")))]
-mod morton;
 
 use std::ops::AddAssign;
 

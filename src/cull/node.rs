@@ -2,9 +2,10 @@
 
 use glam::Vec3;
 
+use super::lanes::lanes_of;
 use super::value::{KeptSlopes, worth};
 use crate::bounds::{Aabb, Sphere};
-use crate::scene::{BLOCK, Objects};
+use crate::scene::{BLOCK, Block, Objects};
 
 /// Objects that reach farther from the origin than this, in world units, are put into a box that is all of space
 /// and always tested one by one: beyond about 1e19 the distance to a plane can overflow, and a box could no longer
@@ -62,48 +63,30 @@ impl Node {
     /// No object at all; the neutral element of [`Node::union`].
     pub const EMPTY: Self = Self { aabb: Aabb::EMPTY, limits: Limits::EMPTY };
 
-    /// The node over one block.
+    /// The node over one block. Straight loops over the lanes, which compilers turn into vector code.
     pub fn of_block(objects: &Objects, index: usize, slopes: &KeptSlopes) -> Self {
         let block = &objects.blocks()[index];
-        let lanes = (0..BLOCK).filter(|lane| block.live & (1 << lane) != 0);
-        let mut node =
-            lanes.fold(Self::EMPTY, |node, lane| node.union(&Self::of_object(objects, index, lane, slopes)));
-        node.limits.area = if node.is_tame() { node.aabb.half_area() } else { 0.0 };
-        node
-    }
-
-    fn of_object(objects: &Objects, index: usize, lane: usize, slopes: &KeptSlopes) -> Self {
-        let block = &objects.blocks()[index];
-        let sphere = block.sphere(lane);
-        let (bias, draw_distance) = match block.adjusted & (1 << lane) {
-            0 => (1.0, f32::INFINITY),
-            _ => {
-                let settings = objects.settings(index * BLOCK + lane);
-                (settings.bias, settings.draw_distance)
-            }
-        };
-        let worth = match block.skippable & (1 << lane) {
-            0 => f64::INFINITY,
-            _ => worth(objects, index, lane, Some(slopes.of(block.table[lane]))),
-        };
+        if block.live == 0 {
+            return Self::EMPTY;
+        }
+        let aabb = spacious(block);
+        let area = if aabb.max.x < f32::INFINITY { aabb.half_area() } else { 0.0 };
+        let (size, reach) = sizes_and_reaches(objects, index);
+        let worth = range(block.live, &worths(objects, index, slopes), [f64::INFINITY, 0.0]);
+        let none = [f32::INFINITY, 0.0];
         let limits = Limits {
-            size: [sphere.radius * bias; 2],
-            reach: [draw_distance; 2],
-            worth: [worth; 2],
-            live: 1,
-            area: 0.0,
+            size: range(block.live, &size, none),
+            reach: range(block.live, &reach, none),
+            worth,
+            live: block.live.count_ones(),
+            area,
         };
-        Self { aabb: spacious(&sphere), limits }
+        Self { aabb, limits }
     }
 
     /// The node over both.
     pub fn union(&self, other: &Self) -> Self {
         Self { aabb: self.aabb.union(other.aabb), limits: self.limits.union(&other.limits) }
-    }
-
-    /// Whether the box may be tried against planes.
-    pub fn is_tame(&self) -> bool {
-        self.aabb.max.x < f32::INFINITY
     }
 }
 
@@ -117,13 +100,52 @@ pub(super) fn reach(aabb: &Aabb, eye: Vec3) -> [Vec3; 2] {
     [below.max(above).max(Vec3::ZERO), below.abs().max(above.abs())]
 }
 
-/// A box around the sphere with a little room, or all of space.
-fn spacious(sphere: &Sphere) -> Aabb {
-    if !is_tame(sphere) {
+/// A box around the live spheres of a block with a little room, or all of space.
+fn spacious(block: &Block) -> Aabb {
+    let tame = (0..BLOCK).fold(0, |tame, lane| tame | u16::from(is_tame(&block.sphere(lane))) << lane);
+    if block.live & !tame != 0 {
         return Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
     }
-    let aabb = sphere.aabb();
-    Aabb { min: aabb.min - SKIN, max: aabb.max + SKIN }
+    let outside = [f32::INFINITY, f32::NEG_INFINITY];
+    let [x, y, z] = [&block.x, &block.y, &block.z].map(|column| {
+        let lower = std::array::from_fn(|lane| column[lane] - block.radius[lane] - SKIN);
+        let upper = std::array::from_fn(|lane| column[lane] + block.radius[lane] + SKIN);
+        [range(block.live, &lower, outside)[0], range(block.live, &upper, outside)[1]]
+    });
+    Aabb { min: Vec3::new(x[0], y[0], z[0]), max: Vec3::new(x[1], y[1], z[1]) }
+}
+
+/// Radius · bias and draw distance per lane.
+fn sizes_and_reaches(objects: &Objects, index: usize) -> ([f32; BLOCK], [f32; BLOCK]) {
+    let block = &objects.blocks()[index];
+    let (mut sizes, mut reaches) = (block.radius, [f32::INFINITY; BLOCK]);
+    for lane in lanes_of(block.live & block.adjusted) {
+        let settings = objects.settings(index * BLOCK + lane);
+        sizes[lane] *= settings.bias;
+        reaches[lane] = settings.draw_distance;
+    }
+    (sizes, reaches)
+}
+
+/// Worth per lane; infinite for what may not be left out.
+fn worths(objects: &Objects, index: usize, slopes: &KeptSlopes) -> [f64; BLOCK] {
+    let block = &objects.blocks()[index];
+    let mut worths = [f64::INFINITY; BLOCK];
+    for lane in lanes_of(block.live & block.skippable) {
+        worths[lane] = worth(objects, index, lane, Some(slopes.of(block.table[lane])));
+    }
+    worths
+}
+
+/// Least and greatest number in the lanes of `mask`, starting from those of no lane.
+fn range<T: Copy + PartialOrd>(mask: u16, lanes: &[T; BLOCK], none: [T; 2]) -> [T; 2] {
+    lanes.iter().enumerate().fold(none, |[least, most], (lane, &number)| {
+        let counts = mask >> lane & 1 != 0;
+        [
+            if counts & (number < least) { number } else { least },
+            if counts & (number > most) { number } else { most },
+        ]
+    })
 }
 
 /// Whether planes can be told from rounding at the sphere's place.

@@ -8,20 +8,21 @@ use super::value::{KeptSlopes, worth};
 use crate::bounds::Sphere;
 use crate::scene::{BLOCK, ObjectId, Objects};
 
-#[cfg(feature = "bvh")]
-use super::bvh::SpatialOrder;
-#[cfg(not(feature = "bvh"))]
-use super::morton::SpatialOrder;
+/// Lists spheres so that near ones are next to each other.
+pub(super) trait SpatialOrder {
+    /// Indices of the spheres, which must be finite and far from overflow.
+    fn order(&mut self, spheres: &[Sphere]) -> &[u32];
+}
 
 /// Finds an arrangement in which objects that are near each other and of one class share a block, from nothing but the
 /// objects: the slots that they are in, or the order in which they came, make no difference.
 #[derive(Clone, Default)]
-pub(super) struct Arranger {
+pub(super) struct Arranger<S> {
     /// Occupied slots by kind, and by id among themselves.
     ranked: Vec<(Kind, ObjectId, u32)>,
     /// Bounds of one kind, by rank.
     spheres: Vec<Sphere>,
-    spatial: SpatialOrder,
+    spatial: S,
     slots: Vec<u32>,
 }
 
@@ -38,7 +39,7 @@ enum Kind {
     Absent,
 }
 
-impl Arranger {
+impl<S: SpatialOrder> Arranger<S> {
     /// The occupied ones of `slots` in the order in which they should be arranged. Worth is taken at these slopes.
     pub fn arrange(&mut self, objects: &Objects, slots: Range<usize>, slopes: &KeptSlopes) -> &[u32] {
         self.rank(objects, slots, slopes);

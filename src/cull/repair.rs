@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 
+use super::morton::Curve;
 use super::node::{Node, is_tame};
 use super::order::Arranger;
 use super::tree::{BlockTree, FAN_OUT};
@@ -44,7 +45,8 @@ pub(super) struct Repairs {
     worst: Vec<(f32, u32)>,
     /// Whether some had to wait.
     pub is_pending: bool,
-    arranger: Arranger,
+    /// Along a curve, whatever orders the whole: it allocates nothing once warm.
+    arranger: Arranger<Curve>,
     from: Vec<u32>,
     to: Vec<u32>,
     areas: Vec<f32>,

@@ -3,6 +3,10 @@
 use std::ops::Range;
 
 use super::boxes::Boxes;
+#[cfg(feature = "bvh")]
+use super::bvh::Hierarchy as Global;
+#[cfg(not(feature = "bvh"))]
+use super::morton::Curve as Global;
 use super::node::{Limits, Node};
 use super::order::Arranger;
 use super::repair::Repairs;
@@ -23,9 +27,9 @@ const OUTGROWN: usize = 2;
 /// Blocks whose worth is brought to newly expected slopes in an update: about 0.2 ms of work.
 const REPRICED_BLOCKS: usize = 1024;
 
-/// Factor between a slope that is expected and the one that is kept at which the nodes' worth is made anew. Above 1;
-/// smaller renews more often, larger passes over less.
-const DRIFT: f32 = 1.25;
+/// By how much two slopes may come to differ from how they compared when the nodes' worth was made, before it is made
+/// anew. Above 1; smaller renews more often, larger passes over less.
+const DRIFT: f64 = 1.5;
 
 /// Boxes over the blocks of one [`Objects`], as an implicit tree: level 0 has a node per block, every level above
 /// one per 8 below, and the last a single root. Kept for as long as the objects are; one per store.
@@ -106,8 +110,8 @@ impl BlockTree {
     ///
     /// The first update of all but tiny stores arranges all objects, and so does one of a store that has doubled since
     /// or has become half empty: about 1 µs per object, as [`BlockTree::rearrange`]. All others repair the order where it
-    /// has suffered most, a few thousand objects at a time: under a millisecond, and no more than a quarter of the work
-    /// of renewing the boxes where that is longer.
+    /// has suffered most, a thousand objects or two at a time: about a millisecond, and more only where so many blocks
+    /// changed that renewing their boxes takes four times as long.
     ///
     /// Cost otherwise: nothing when nothing changed, else one look at every block's revision, and 0.1 to 0.2 µs per
     /// changed block. Nothing is allocated but for blocks that are new, and while arranging all.
@@ -134,7 +138,7 @@ impl BlockTree {
     /// Cost: about 1 µs per object.
     pub fn rearrange(&mut self, objects: &mut Objects) -> UpdateReport {
         let slots = 0..objects.blocks().len() * BLOCK;
-        objects.reorder(Arranger::default().arrange(objects, slots, &self.slopes));
+        objects.reorder(Arranger::<Global>::default().arrange(objects, slots, &self.slopes));
         self.ordered = Some(objects.len());
         let blocks_refitted = self.refit(objects);
         self.settle_all();
@@ -145,10 +149,10 @@ impl BlockTree {
     /// of no matter, only how they compare; a tree that is told nothing assumes that all tables are alike. No answer
     /// depends on it, only how much is passed over untested. To be called whenever slopes change.
     ///
-    /// Cost: a nanosecond per table. Where some are beyond a quarter of what they were, the next updates renew what is
-    /// kept, some 0.2 ms each; until then culling keeps to bounds that hold for both.
+    /// Cost: a nanosecond per table. Where two have come to compare differently by half, the next updates renew what is
+    /// kept, some 0.2 ms each; until then culling keeps to bounds that hold for the old slopes and the new.
     pub fn expect_slopes(&mut self, best_slope: &[f32]) {
-        if self.is_repricing() || self.slopes.are_near(best_slope, DRIFT) {
+        if self.is_repricing() || self.slopes.are_alike(best_slope, DRIFT) {
             return;
         }
         std::mem::swap(&mut self.slopes, &mut self.former);

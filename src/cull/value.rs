@@ -131,12 +131,13 @@ impl KeptSlopes {
         self.0.extend(slopes.iter().map(usable));
     }
 
-    /// Whether all slopes are within a factor of those that are kept, one way and the other.
-    pub fn are_near(&self, slopes: &[f32], factor: f32) -> bool {
-        self.0.len() >= slopes.len()
-            && slopes.iter().zip(&self.0).all(|(&now, &kept)| {
-                !(now.is_finite() && now > 0.0) || now <= kept * factor && kept <= now * factor
-            })
+    /// Whether these compare with each other as those that are kept do, within a factor.
+    pub fn are_alike(&self, slopes: &[f32], factor: f64) -> bool {
+        let usable = slopes.iter().enumerate().filter(|&(_, slope)| slope.is_finite() && *slope > 0.0);
+        let ratios = usable.map(|(table, &now)| f64::from(now) / f64::from(self.of(table as u16)));
+        let [least, most] =
+            ratios.fold([f64::INFINITY, 0.0f64], |[least, most], ratio| [least.min(ratio), most.max(ratio)]);
+        most <= least * factor
     }
 }
 
