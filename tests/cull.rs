@@ -3,6 +3,7 @@
 use glam::{DVec3, Quat, Vec2, Vec3};
 use lod_budget::bounds::Sphere;
 use lod_budget::cull::{BlockTree, CullOptions, CullReport, ValueFloor, VisibleBlock, linear, linear_above};
+use lod_budget::rate::{CostModel, Stages};
 use lod_budget::scene::{BLOCK, Object, ObjectId, Objects, Settings, TableId};
 use lod_budget::table::{Level, LevelRecord, LodTable};
 use lod_budget::view::{Lens, Projection, View, Window};
@@ -228,6 +229,35 @@ fn small_and_far_subtrees_are_left_out_whole() {
     tree.update(&mut objects);
     let (_, report) = search(&tree, &objects, &view, &CullOptions::default());
     assert_eq!((report.nodes_visited, report.too_far), (1, objects.len() as u64));
+}
+
+#[test]
+fn subtrees_that_are_worth_too_little_are_left_out_whole() {
+    let mut objects = store(grid(40, 1.0).map(|sphere| (sphere, skippable())));
+    let tree = arranged(&mut objects);
+    let view = lens(&square().at(Vec3::Z * 100.0, Quat::IDENTITY));
+    let floor = ValueFloor { lambda: 1e9, best_slope: &[1.0; 3] };
+    let mut visible = Vec::new();
+    let report = tree.cull_above(&objects, &view, &CullOptions::default(), &floor, &mut visible);
+    let expected =
+        CullReport { nodes_visited: 1, worth_too_little: objects.len() as u64, ..Default::default() };
+    assert_eq!((visible.len(), report), (0, expected));
+}
+
+/// With ten times the city around the same view, hardly more is looked at.
+#[test]
+fn what_is_far_and_worth_little_costs_nothing() {
+    let visits = |side: i32| {
+        let mut objects = store(grid(side, 4.0).map(|sphere| (sphere, skippable())));
+        let tree = arranged(&mut objects);
+        let view = lens(&View { far: f32::INFINITY, ..square() });
+        let floor = ValueFloor { lambda: 100.0, best_slope: &[1.0; 3] };
+        let mut visible = Vec::new();
+        let report = tree.cull_above(&objects, &view, &CullOptions::default(), &floor, &mut visible);
+        assert!(report.visible > 10, "{report:?}");
+        report.nodes_visited + report.blocks_tested
+    };
+    assert!(visits(160) < 2 * visits(50), "{} and {}", visits(160), visits(50));
 }
 
 #[test]
@@ -673,6 +703,35 @@ proptest! {
         let tree = arranged(&mut objects);
         for (view, question) in views {
             compare(&tree, &objects, &all, &lens(&view), question);
+        }
+    }
+
+    /// In the arithmetic of rating, and at any level: it would cost more than it is worth at λ.
+    #[test]
+    fn what_is_passed_over_is_not_worth_its_cost(
+        scene in scene(),
+        view in view(),
+        lambda in 1f64..1e6,
+        stages in select(vec![Stages::Sum, Stages::Max]),
+    ) {
+        let objects = store(scene);
+        let (lens, model) = (lens(&view), CostModel { stages, ..CostModel::default() });
+        let levels: Vec<LevelRecord> = objects.tables().iter().map(|table| table.levels()[0]).collect();
+        let slope = |level: &LevelRecord| (f64::from(level.accuracy) / model.geometry_us(level)) as f32;
+        let best_slope: Vec<f32> = levels.iter().map(slope).collect();
+        let floor = ValueFloor { lambda, best_slope: &best_slope };
+        let (mut all, mut kept) = (Vec::new(), Vec::new());
+        linear(&objects, &lens, &CullOptions::default(), &mut all);
+        linear_above(&objects, &lens, &CullOptions::default(), &floor, &mut kept);
+        let kept = ids(&objects, &kept);
+        for id in ids(&objects, &all).into_iter().filter(|id| kept.binary_search(id).is_err()) {
+            let Object { bounds, settings, table, .. } = objects.get(id).expect("a known id");
+            let (level, scale) = (&levels[usize::from(table.0)], f64::from(settings.cost_multiplier));
+            let area_px2 = lens.area_px2(&bounds);
+            let weight = area_px2 * (settings.importance * (settings.bias * settings.bias));
+            let benefit = f64::from(weight * level.accuracy);
+            let cost_us = model.object_us(model.geometry_us(level), scale, f64::from(area_px2) * scale);
+            prop_assert!(settings.may_skip && benefit <= lambda * cost_us);
         }
     }
 
