@@ -72,15 +72,8 @@ impl Node {
         let aabb = spacious(block);
         let area = if aabb.max.x < f32::INFINITY { aabb.half_area() } else { 0.0 };
         let (size, reach) = sizes_and_reaches(objects, index);
-        let worth = range(block.live, &worths(objects, index, slopes), [f64::INFINITY, 0.0]);
-        let none = [f32::INFINITY, 0.0];
-        let limits = Limits {
-            size: range(block.live, &size, none),
-            reach: range(block.live, &reach, none),
-            worth,
-            live: block.live.count_ones(),
-            area,
-        };
+        let worth = worths(objects, index, slopes);
+        let limits = Limits { size, reach, worth, live: block.live.count_ones(), area };
         Self { aabb, limits }
     }
 
@@ -106,46 +99,60 @@ fn spacious(block: &Block) -> Aabb {
     if block.live & !tame != 0 {
         return Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
     }
-    let outside = [f32::INFINITY, f32::NEG_INFINITY];
-    let [x, y, z] = [&block.x, &block.y, &block.z].map(|column| {
-        let lower = std::array::from_fn(|lane| column[lane] - block.radius[lane] - SKIN);
-        let upper = std::array::from_fn(|lane| column[lane] + block.radius[lane] + SKIN);
-        [range(block.live, &lower, outside)[0], range(block.live, &upper, outside)[1]]
-    });
+    let [x, y, z] = [&block.x, &block.y, &block.z].map(|column| span(block.live, column, &block.radius));
     Aabb { min: Vec3::new(x[0], y[0], z[0]), max: Vec3::new(x[1], y[1], z[1]) }
 }
 
-/// Radius · bias and draw distance per lane.
-fn sizes_and_reaches(objects: &Objects, index: usize) -> ([f32; BLOCK], [f32; BLOCK]) {
+/// From where to where the live spheres reach along an axis, and a little farther.
+fn span(live: u16, column: &[f32; BLOCK], radius: &[f32; BLOCK]) -> [f32; 2] {
+    let (mut lower, mut upper) = ([0.0; BLOCK], [0.0; BLOCK]);
+    for lane in 0..BLOCK {
+        lower[lane] = column[lane] - radius[lane] - SKIN;
+        upper[lane] = column[lane] + radius[lane] + SKIN;
+    }
+    [least(live, lower), -least(live, upper.map(|x| -x))]
+}
+
+/// The least number in the lanes of `mask`; infinite without one. By halves, so that it is vector code.
+fn least(mask: u16, mut lanes: [f32; BLOCK]) -> f32 {
+    for (lane, number) in lanes.iter_mut().enumerate() {
+        *number = if mask >> lane & 1 != 0 { *number } else { f32::INFINITY };
+    }
+    for half in [8, 4, 2, 1] {
+        for lane in 0..half {
+            let (a, b) = (lanes[lane], lanes[lane + half]);
+            lanes[lane] = if b < a { b } else { a };
+        }
+    }
+    lanes[0]
+}
+
+/// Least and greatest radius · bias, and draw distance.
+fn sizes_and_reaches(objects: &Objects, index: usize) -> ([f32; 2], [f32; 2]) {
     let block = &objects.blocks()[index];
-    let (mut sizes, mut reaches) = (block.radius, [f32::INFINITY; BLOCK]);
-    for lane in lanes_of(block.live & block.adjusted) {
+    let (mut sizes, mut reach) = (block.radius, [f32::INFINITY; 2]);
+    let adjusted = block.live & block.adjusted;
+    for lane in lanes_of(adjusted) {
         let settings = objects.settings(index * BLOCK + lane);
         sizes[lane] *= settings.bias;
-        reaches[lane] = settings.draw_distance;
+        reach[0] = reach[0].min(settings.draw_distance);
     }
-    (sizes, reaches)
+    if adjusted == block.live {
+        let farthest = |lane| objects.settings(index * BLOCK + lane).draw_distance;
+        reach[1] = lanes_of(adjusted).map(farthest).fold(0.0, f32::max);
+    }
+    ([least(block.live, sizes), -least(block.live, sizes.map(|x| -x))], reach)
 }
 
-/// Worth per lane; infinite for what may not be left out.
-fn worths(objects: &Objects, index: usize, slopes: &KeptSlopes) -> [f64; BLOCK] {
+/// Least and greatest worth; infinite where an object may not be left out.
+fn worths(objects: &Objects, index: usize, slopes: &KeptSlopes) -> [f64; 2] {
     let block = &objects.blocks()[index];
-    let mut worths = [f64::INFINITY; BLOCK];
-    for lane in lanes_of(block.live & block.skippable) {
-        worths[lane] = worth(objects, index, lane, Some(slopes.of(block.table[lane])));
-    }
-    worths
-}
-
-/// Least and greatest number in the lanes of `mask`, starting from those of no lane.
-fn range<T: Copy + PartialOrd>(mask: u16, lanes: &[T; BLOCK], none: [T; 2]) -> [T; 2] {
-    lanes.iter().enumerate().fold(none, |[least, most], (lane, &number)| {
-        let counts = mask >> lane & 1 != 0;
-        [
-            if counts & (number < least) { number } else { least },
-            if counts & (number > most) { number } else { most },
-        ]
-    })
+    let skippable = block.live & block.skippable;
+    let of_lane = |lane| worth(objects, index, lane, Some(slopes.of(block.table[lane])));
+    let start = if skippable == block.live { 0.0 } else { f64::INFINITY };
+    lanes_of(skippable)
+        .map(of_lane)
+        .fold([f64::INFINITY, start], |[least, most], worth| [least.min(worth), most.max(worth)])
 }
 
 /// Whether planes can be told from rounding at the sphere's place.
