@@ -120,6 +120,13 @@ impl Settings {
         table.narrowed(self.resident)
     }
 
+    /// Whether the selection may leave out an object with a table of `levels` levels: where skipping is allowed and
+    /// neither force, clamp nor residency rules out the coarsest level.
+    pub fn may_be_left_out(&self, levels: usize) -> bool {
+        let coarsest = || self.allowed(levels).coarsest.index() + 1 == levels;
+        self.may_skip && self.forced.is_none() && coarsest()
+    }
+
     fn broken_rule(&self) -> Option<&'static str> {
         let is_factor = |x: f32| x.is_finite() && x > 0.0;
         if !(self.importance.is_finite() && self.importance >= 0.0) {
@@ -145,6 +152,11 @@ impl Settings {
         } else {
             None
         }
+    }
+
+    /// Whether culling has to look beyond the hot columns for this object.
+    fn is_adjusted(&self) -> bool {
+        self.bias != 1.0 || self.cost_multiplier != 1.0 || self.draw_distance < f32::INFINITY
     }
 
     /// Whether a stage has to look beyond the hot columns for this object.
@@ -198,6 +210,10 @@ pub struct Block {
     pub live: u16,
     /// Bit per slot: its settings say more than importance.
     pub special: u16,
+    /// Bit per slot: its bias, cost multiplier or draw distance is not the default.
+    pub adjusted: u16,
+    /// Bit per slot: the selection may leave it out ([`Settings::may_be_left_out`]).
+    pub skippable: u16,
 }
 
 impl Block {
@@ -210,6 +226,8 @@ impl Block {
         table: [0; BLOCK],
         live: 0,
         special: 0,
+        adjusted: 0,
+        skippable: 0,
     };
 
     /// The bound in one lane.
@@ -221,8 +239,8 @@ impl Block {
 /// All objects and their tables.
 ///
 /// Objects live in *slots*: slot `s` is lane `s % 16` of block `s / 16`. Slots are an arrangement for speed; they
-/// change when [`Objects::reorder`] is called. Ids do not. Removal leaves a hole, insertion appends or fills a hole
-/// near the end, and a reorder closes the holes.
+/// change when [`Objects::reorder`] or [`Objects::relocate`] is called. Ids do not. Removal leaves a hole, insertion
+/// appends, or fills a hole where a quarter of the slots are holes, and a reorder closes the holes.
 ///
 /// Every change raises [`Objects::revision`], so that whoever keeps something per slot can see what to renew.
 #[derive(Clone, Debug, Default)]
@@ -231,14 +249,18 @@ pub struct Objects {
     tables: Vec<LodTable>,
     blocks: Vec<Block>,
     cold: Vec<Cold>,
+    /// Per block, a bit per slot: it has a tenant.
+    occupied: Vec<u16>,
     slots: HashMap<ObjectId, u32, BuildHasherDefault<IdHasher>>,
-    holes: usize,
     appended: usize,
+    /// The block where a hole was last looked for.
+    cursor: usize,
     broken_bounds: usize,
     revision: u64,
     layout_revision: u64,
     block_revisions: Vec<u64>,
-    /// Where objects wait while [`Objects::reorder`] writes the slots anew; empty between calls.
+    block_layout_revisions: Vec<u64>,
+    /// Where objects wait while their slots are written anew; empty between calls.
     moving: Vec<Object>,
 }
 
@@ -267,16 +289,18 @@ impl Objects {
 
     /// Moves the origin and re-expresses every bound relative to it, so that everything stays where it is in the
     /// world. Decisions stay the same as far as the bounds do: exactly, where the shift is a multiple of a bound's
-    /// last place.
+    /// last place. A bound that a shift makes too large for its numbers is broken from then on.
     pub fn shift_origin(&mut self, origin: DVec3) {
         let shift = self.origin - origin;
         self.origin = origin;
         self.revision += 1;
-        for block in &mut self.blocks {
+        self.broken_bounds = 0;
+        for (block, cold) in self.blocks.iter_mut().zip(self.cold.chunks(BLOCK)) {
             let columns = [(&mut block.x, shift.x), (&mut block.y, shift.y), (&mut block.z, shift.z)];
             for (column, by) in columns {
                 column.iter_mut().for_each(|c| *c = (f64::from(*c) + by) as f32);
             }
+            self.broken_bounds += renew_live(block, cold);
         }
         self.block_revisions.fill(self.revision);
     }
@@ -308,25 +332,18 @@ impl Objects {
             return Err(ObjectError::of(object.id, "the id is in use"));
         }
         let slot = self.free_slot();
-        self.slots.insert(object.id, slot as u32);
+        self.appended += 1;
         self.write(slot, &object);
-        self.revision += 1;
-        self.layout_revision = self.revision;
-        self.block_revisions[slot / BLOCK] = self.revision;
+        self.touch_layout(slot);
         Ok(())
     }
 
     /// Takes an object out and returns it; `None` when there is none of that id.
     pub fn remove(&mut self, id: ObjectId) -> Option<Object> {
         let slot = self.slots.remove(&id)? as usize;
-        let object = self.read(slot)?;
-        self.broken_bounds -= usize::from(!object.bounds.is_valid());
-        self.cold[slot].id = None;
-        self.blocks[slot / BLOCK].live &= !(1 << (slot % BLOCK));
-        self.holes += 1;
-        self.touch(slot);
-        self.layout_revision = self.revision;
-        Some(object)
+        let object = self.vacate(slot);
+        self.touch_layout(slot);
+        object
     }
 
     /// The object of that id.
@@ -361,6 +378,7 @@ impl Objects {
             return Err(ObjectError::of(id, "its table is unknown"));
         }
         self.blocks[slot / BLOCK].table[slot % BLOCK] = table.0;
+        self.write_settings(slot, self.cold[slot].settings);
         self.touch(slot);
         Ok(())
     }
@@ -429,37 +447,68 @@ impl Objects {
         &self.block_revisions
     }
 
+    /// Per block, the revision at which an object last came into, went from or changed its slot in it.
+    pub fn block_layout_revisions(&self) -> &[u64] {
+        &self.block_layout_revisions
+    }
+
+    /// Per block, a bit per slot: an object lives in it.
+    pub fn occupied(&self) -> &[u16] {
+        &self.occupied
+    }
+
     /// How many slots are out of order: holes, and objects that came after the last [`Objects::reorder`].
     pub fn disorder(&self) -> usize {
-        self.holes + self.appended
+        self.holes() + self.appended
     }
 
     /// Re-arranges the slots: the object in slot `order[i]` moves to slot `i`. Holes are closed. Decisions do not
-    /// depend on the order, only speed does. Allocates nothing when there are no more objects than at an earlier call.
+    /// depend on the order, only speed does. Takes 100 bytes per object while it works.
     ///
     /// # Panics
     /// `order` must name every occupied slot exactly once.
     pub fn reorder(&mut self, order: &[u32]) {
         assert_eq!(order.len(), self.len(), "an order names every occupied slot once");
-        let mut objects = std::mem::take(&mut self.moving);
-        objects.extend(order.iter().filter_map(|&slot| self.read(slot as usize)));
-        assert_eq!(objects.len(), order.len(), "an order names occupied slots only");
-        self.blocks.clear();
-        self.cold.clear();
-        self.block_revisions.clear();
-        self.holes = 0;
-        self.broken_bounds = 0;
+        let mut objects = Vec::with_capacity(order.len());
+        objects.extend(order.iter().filter_map(|&slot| self.vacate(slot as usize)));
+        assert_eq!(objects.len(), order.len(), "an order names occupied slots, and none twice");
+        self.truncate(0);
         self.revision += 1;
         self.layout_revision = self.revision;
-        for (slot, object) in objects.drain(..).enumerate() {
+        for (slot, object) in objects.into_iter().enumerate() {
             self.push_slot();
             self.write(slot, &object);
-            self.slots.insert(object.id, slot as u32);
+        }
+        self.block_revisions.fill(self.revision);
+        self.block_layout_revisions.fill(self.revision);
+        self.appended = 0;
+    }
+
+    /// Moves the object in slot `from[i]` to slot `to[i]`, for all `i` at once; slots beyond the end are made, and
+    /// holes at the end given up. Decisions do not depend on it. Allocates nothing for as many objects and slots as
+    /// there were before.
+    ///
+    /// # Panics
+    /// `from` must name occupied slots, `to` holes or slots in `from`, as many, and neither one twice.
+    pub fn relocate(&mut self, from: &[u32], to: &[u32]) {
+        assert_eq!(from.len(), to.len(), "every object goes to one slot");
+        let mut objects = std::mem::take(&mut self.moving);
+        for &slot in from {
+            objects.extend(self.vacate(slot as usize));
+            self.touch_layout(slot as usize);
+        }
+        assert_eq!(objects.len(), from.len(), "only occupied slots can be left, and only once");
+        for (object, &slot) in objects.drain(..).zip(to) {
+            while self.cold.len() <= slot as usize {
+                self.push_slot();
+            }
+            assert!(self.id_of(slot as usize).is_none(), "slot {slot} is taken");
+            self.write(slot as usize, &object);
+            self.touch_layout(slot as usize);
         }
         self.moving = objects;
-        assert_eq!(self.slots.len(), order.len(), "an order names no slot twice");
-        self.block_revisions.fill(self.revision);
-        self.appended = 0;
+        let last = self.occupied.iter().rposition(|&lanes| lanes != 0);
+        self.truncate(last.map_or(0, |block| (block + 1) * BLOCK));
     }
 
     fn check(&self, object: &Object) -> Result<(), ObjectError> {
@@ -481,30 +530,71 @@ impl Objects {
         self.block_revisions[slot / BLOCK] = self.revision;
     }
 
-    /// A hole in the last block, or a new slot at the end.
+    fn touch_layout(&mut self, slot: usize) {
+        self.touch(slot);
+        self.layout_revision = self.revision;
+        self.block_layout_revisions[slot / BLOCK] = self.revision;
+    }
+
+    fn holes(&self) -> usize {
+        self.cold.len() - self.slots.len()
+    }
+
+    /// A hole where a quarter of the slots are holes, else one in the last block or a new slot at the end.
     fn free_slot(&mut self) -> usize {
-        self.appended += 1;
-        let last = self.cold.len() / BLOCK * BLOCK;
-        match (last..self.cold.len()).find(|&slot| self.cold[slot].id.is_none()) {
-            Some(slot) => {
-                self.holes -= 1;
-                slot
-            }
-            None => self.push_slot(),
+        if self.holes() * 4 > self.cold.len() {
+            self.cursor = self.next_loose_block();
+        } else {
+            self.cursor = self.blocks.len().saturating_sub(1);
         }
+        let first = self.cursor * BLOCK;
+        let lanes = BLOCK.min(self.cold.len() - first.min(self.cold.len()));
+        let hole = (first..first + lanes).find(|&slot| self.cold[slot].id.is_none());
+        hole.unwrap_or_else(|| self.push_slot())
+    }
+
+    /// The next block with a hole, from the cursor on and around. As many blocks are passed over in a round as there
+    /// are, and a quarter of the slots filled.
+    fn next_loose_block(&self) -> usize {
+        let blocks = self.occupied.len();
+        let from = self.cursor.min(blocks);
+        let loose = |&block: &usize| self.occupied[block] != u16::MAX;
+        (from..blocks).chain(0..from).find(loose).unwrap_or(blocks.saturating_sub(1))
     }
 
     fn push_slot(&mut self) -> usize {
         if self.cold.len().is_multiple_of(BLOCK) {
             self.blocks.push(Block::EMPTY);
+            self.occupied.push(0);
             self.block_revisions.push(self.revision);
+            self.block_layout_revisions.push(self.revision);
         }
         self.cold.push(Cold { id: None, settings: Settings::default() });
         self.cold.len() - 1
     }
 
+    /// Gives up the slots from `slots` on.
+    fn truncate(&mut self, slots: usize) {
+        let blocks = slots.div_ceil(BLOCK);
+        self.cold.truncate(slots);
+        self.blocks.truncate(blocks);
+        self.occupied.truncate(blocks);
+        self.block_revisions.truncate(blocks);
+        self.block_layout_revisions.truncate(blocks);
+    }
+
+    /// Makes a hole of a slot; its tenant, if there was one.
+    fn vacate(&mut self, slot: usize) -> Option<Object> {
+        let object = self.read(slot)?;
+        self.broken_bounds -= usize::from(!object.bounds.is_valid());
+        self.cold[slot].id = None;
+        set_bit(&mut self.occupied[slot / BLOCK], slot % BLOCK, false);
+        set_bit(&mut self.blocks[slot / BLOCK].live, slot % BLOCK, false);
+        Some(object)
+    }
+
     fn read(&self, slot: usize) -> Option<Object> {
-        let Cold { id, settings } = self.cold[slot];
+        let &Cold { id, settings } = self.cold.get(slot)?;
         let (block, lane) = (&self.blocks[slot / BLOCK], slot % BLOCK);
         Some(Object { id: id?, bounds: block.sphere(lane), table: TableId(block.table[lane]), settings })
     }
@@ -515,6 +605,8 @@ impl Objects {
         write_bounds(block, lane, object.bounds);
         block.table[lane] = object.table.0;
         self.cold[slot].id = Some(object.id);
+        self.slots.insert(object.id, slot as u32);
+        set_bit(&mut self.occupied[slot / BLOCK], lane, true);
         self.write_settings(slot, object.settings);
     }
 
@@ -522,10 +614,24 @@ impl Objects {
         self.cold[slot].settings = settings;
         let (block, lane) = (&mut self.blocks[slot / BLOCK], slot % BLOCK);
         block.gain[lane] = settings.importance * (settings.bias * settings.bias);
+        let levels = self.tables[usize::from(block.table[lane])].levels().len();
         set_bit(&mut block.special, lane, settings.is_special());
+        set_bit(&mut block.adjusted, lane, settings.is_adjusted());
+        set_bit(&mut block.skippable, lane, settings.may_be_left_out(levels));
         let live = !settings.hidden && block.sphere(lane).is_valid();
         set_bit(&mut block.live, lane, live);
     }
+}
+
+/// Finds out anew which lanes are live, and returns how many of the tenants' bounds are broken.
+fn renew_live(block: &mut Block, cold: &[Cold]) -> usize {
+    let mut broken = 0;
+    for (lane, Cold { id, settings }) in cold.iter().enumerate() {
+        let valid = block.sphere(lane).is_valid();
+        broken += usize::from(id.is_some() && !valid);
+        set_bit(&mut block.live, lane, id.is_some() && valid && !settings.hidden);
+    }
+    broken
 }
 
 fn write_bounds(block: &mut Block, lane: usize, bounds: Sphere) {
@@ -663,6 +769,19 @@ mod tests {
         assert_eq!(forced.allowed(5), LevelRange::new(4, 4));
         let streamed = Settings { resident: LevelRange::new(3, 3), ..forced };
         assert_eq!(streamed.allowed(5), LevelRange::new(3, 3));
+    }
+
+    #[test]
+    fn a_shift_that_overflows_a_bound_breaks_it() {
+        let mut store = store(3);
+        let hidden = Settings { hidden: true, ..Settings::default() };
+        store.set_settings(ObjectId(1), hidden).expect("a known id");
+        store.shift_origin(DVec3::X * 1e300);
+        assert_eq!((store.blocks()[0].live, store.broken_bounds()), (0, 3));
+        for id in 0..3 {
+            store.set_bounds(ObjectId(id), ball(0.0)).expect("a known id");
+        }
+        assert_eq!((store.blocks()[0].live, store.broken_bounds()), (0b101, 0));
     }
 
     #[test]

@@ -243,7 +243,7 @@ impl Frustum {
 
 /// Relative room for the rounding of a plane's distance: a few dozen units in the last place. Larger only sends
 /// more boxes down to the exact test; smaller than about 8 · 2⁻²⁴ would let the box test and the exact one disagree.
-const SLACK: f32 = 3e-6;
+pub(crate) const SLACK: f32 = 3e-6;
 
 /// A view made ready for one frame: frustum and projection in the coordinates of the objects.
 #[derive(Clone, Copy, Debug, PartialEq)]

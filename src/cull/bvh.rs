@@ -6,6 +6,7 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use obvhs::ploc::{PlocBuilder, SortPrecision};
 
+use super::order::SpatialOrder;
 use crate::bounds::Sphere;
 
 /// Greatest room given to a sphere at random before building, relative to its coordinates: above 1e-6, so that it
@@ -26,16 +27,15 @@ const SEARCH_DISTANCE: usize = 6;
 
 /// Orders spheres as the leaves of their hierarchy, depth first. Keeps its buffers.
 #[derive(Clone, Default)]
-pub(super) struct SpatialOrder {
+pub(super) struct Hierarchy {
     builder: PlocBuilder,
     bvh: Bvh2,
     stack: Vec<u32>,
     order: Vec<u32>,
 }
 
-impl SpatialOrder {
-    /// Indices of the spheres, near ones next to each other. The spheres must be finite and far from overflow.
-    pub fn order(&mut self, spheres: &[Sphere]) -> &[u32] {
+impl SpatialOrder for Hierarchy {
+    fn order(&mut self, spheres: &[Sphere]) -> &[u32] {
         let leaves = &mut self.builder.current_nodes;
         leaves.clear();
         leaves.extend(spheres.iter().zip(0..).map(|(s, index)| Bvh2Node::new(roomy(s, index), 1, index)));
@@ -50,7 +50,9 @@ impl SpatialOrder {
         self.list_leaves();
         &self.order
     }
+}
 
+impl Hierarchy {
     /// Lists the leaves depth first, left before right.
     fn list_leaves(&mut self) {
         self.order.clear();
@@ -109,7 +111,7 @@ mod tests {
 
     #[test]
     fn none_and_one_are_ordered() {
-        let mut spatial = SpatialOrder::default();
+        let mut spatial = Hierarchy::default();
         assert!(spatial.order(&[]).is_empty());
         assert_eq!(spatial.order(&[Sphere::default()]), [0]);
         assert!(spatial.order(&[]).is_empty());
@@ -119,12 +121,12 @@ mod tests {
     fn every_sphere_is_listed_once_and_neighbours_lie_together() {
         let scattered = |i: u32| ball(100.0 * scatter(i), 100.0 * scatter(i.wrapping_mul(i) ^ 0x5bd1_e995));
         let spheres: Vec<Sphere> = (0..4096).map(scattered).collect();
-        let order = SpatialOrder::default().order(&spheres).to_vec();
+        let order = Hierarchy::default().order(&spheres).to_vec();
         let mut sorted = order.clone();
         sorted.sort_unstable();
         assert!(sorted.into_iter().eq(0..4096));
         let as_given: Vec<u32> = (0..4096).collect();
-        let along_curve = area(&spheres, morton::SpatialOrder::default().order(&spheres));
+        let along_curve = area(&spheres, morton::Curve::default().order(&spheres));
         assert!(area(&spheres, &order) < 1.1 * along_curve);
         assert!(area(&spheres, &order) < 0.2 * area(&spheres, &as_given));
     }
@@ -132,7 +134,7 @@ mod tests {
     #[test]
     fn a_buffer_that_was_used_before_changes_nothing() {
         let spheres: Vec<Sphere> = (0..500).map(|i| ball((i * 37 % 101) as f32, (i % 13) as f32)).collect();
-        let mut spatial = SpatialOrder::default();
+        let mut spatial = Hierarchy::default();
         let fresh = spatial.order(&spheres).to_vec();
         spatial.order(&spheres[..200]);
         assert_eq!(spatial.order(&spheres), fresh);

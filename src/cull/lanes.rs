@@ -2,13 +2,14 @@
 
 use glam::Vec3;
 
+use super::value::{Floor, ValueFloor};
 use super::{CullOptions, CullReport, VisibleBlock};
 use crate::scene::{BLOCK, Block, Objects};
 use crate::view::{Lens, PLANES};
 
-/// Bits of the tests that are still open: one per plane, then [`SIZE`] and [`DISTANCE`]. A test is closed when all
-/// objects in question are known to pass it.
-pub(super) type OpenTests = u8;
+/// Bits of the tests that are still open: one per plane, then the limits. A test is closed when all objects in question
+/// are known to pass it.
+pub(super) type OpenTests = u16;
 
 /// All planes.
 pub(super) const ALL_PLANES: OpenTests = (1 << PLANES) - 1;
@@ -16,12 +17,15 @@ pub(super) const ALL_PLANES: OpenTests = (1 << PLANES) - 1;
 pub(super) const SIZE: OpenTests = 1 << PLANES;
 /// The draw distance.
 pub(super) const DISTANCE: OpenTests = 2 << PLANES;
+/// The value floor.
+pub(super) const VALUE: OpenTests = 4 << PLANES;
 
 /// A frame's question to the objects, and where the answer goes.
 pub(super) struct Cull<'a> {
     pub objects: &'a Objects,
     pub lens: &'a Lens,
     pub min_size_px: f32,
+    pub floor: Floor<'a>,
     pub visible: &'a mut Vec<VisibleBlock>,
     pub report: CullReport,
 }
@@ -31,32 +35,45 @@ impl<'a> Cull<'a> {
         objects: &'a Objects,
         lens: &'a Lens,
         options: &CullOptions,
+        floor: &ValueFloor<'a>,
         visible: &'a mut Vec<VisibleBlock>,
     ) -> Self {
         visible.clear();
-        Self { objects, lens, min_size_px: options.min_size_px, visible, report: CullReport::default() }
+        let (floor, report) = (Floor::new(floor, lens), CullReport::default());
+        Self { objects, lens, min_size_px: options.min_size_px, floor, visible, report }
     }
 
     /// The tests that an object has to pass.
     pub fn tests(&self) -> OpenTests {
         let size = if self.min_size_px > 0.0 { SIZE } else { 0 };
-        ALL_PLANES | DISTANCE | size
+        let value = if self.floor.is_open() { VALUE } else { 0 };
+        ALL_PLANES | DISTANCE | size | value
     }
 
-    /// Puts the live objects of a block to the open tests and yields those that pass.
-    pub fn test(&mut self, index: usize, open: OpenTests) {
+    /// Puts the `live` objects of a block to the open tests and yields those that pass.
+    pub fn test(&mut self, index: usize, live: u16, open: OpenTests) {
         let block = &self.objects.blocks()[index];
         self.report.blocks_tested += 1;
-        self.report.objects_tested += u64::from(block.live.count_ones());
-        let seen = block.live & in_view(block, self.lens, open);
-        if seen == 0 {
-            return;
+        self.report.objects_tested += u64::from(live.count_ones());
+        let mut seen = live & in_view(block, self.lens, open);
+        if seen != 0 && open & !ALL_PLANES != 0 {
+            seen = self.within_limits(index, block, seen, open);
         }
+        self.yield_block(index, seen);
+    }
+
+    /// The lanes of `seen` that pass the open limits.
+    fn within_limits(&mut self, index: usize, block: &Block, seen: u16, open: OpenTests) -> u16 {
         let far = if open & DISTANCE != 0 { self.too_far(index, block, seen) } else { 0 };
-        let small = if open & SIZE != 0 { self.too_small(index, block, seen & !far) } else { 0 };
+        let near = seen & !far;
+        let small = if open & SIZE != 0 { self.too_small(index, block, near) } else { 0 };
+        let large = near & !small;
+        let over =
+            if open & VALUE != 0 { self.floor.passes_over(self.objects, index, self.lens, large) } else { 0 };
         self.report.too_far += u64::from(far.count_ones());
         self.report.too_small += u64::from(small.count_ones());
-        self.yield_block(index, seen & !far & !small);
+        self.report.worth_too_little += u64::from(over.count_ones());
+        large & !over
     }
 
     /// Yields the objects in `mask`, if there are any.
@@ -67,23 +84,23 @@ impl<'a> Cull<'a> {
         }
     }
 
-    /// Which of the lanes in `mask` are beyond their draw distance. Only a special lane has one.
+    /// Which of the lanes in `mask` are beyond their draw distance. Only an adjusted lane has one.
     fn too_far(&self, index: usize, block: &Block, mask: u16) -> u16 {
-        select(mask & block.special, |lane| {
+        select(mask & block.adjusted, |lane| {
             let limit = self.objects.settings(index * BLOCK + lane).draw_distance;
             length(block.sphere(lane).center - self.lens.eye) > limit
         })
     }
 
-    /// Which of the lanes in `mask` are too small. Only a special lane has a bias other than 1.
+    /// Which of the lanes in `mask` are too small. Only an adjusted lane has a bias other than 1.
     fn too_small(&self, index: usize, block: &Block, mask: u16) -> u16 {
-        let plain = mask & !block.special & small_lanes(block, self.lens, self.min_size_px);
-        let special = select(mask & block.special, |lane| {
+        let plain = mask & !block.adjusted & small_lanes(block, self.lens, self.min_size_px);
+        let adjusted = select(mask & block.adjusted, |lane| {
             let radius = block.radius[lane] * self.objects.settings(index * BLOCK + lane).bias;
             let distance = self.lens.distance(block.sphere(lane).center);
             size_px(self.lens, radius, distance) < self.min_size_px
         });
-        plain | special
+        plain | adjusted
     }
 }
 
@@ -97,15 +114,18 @@ pub(super) fn length(d: Vec3) -> f32 {
     (d.x * d.x + d.y * d.y + d.z * d.z).sqrt()
 }
 
+/// The positions of the bits of `mask`, ascending.
+pub(super) fn lanes_of(mut mask: u16) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = mask.trailing_zeros() as usize;
+        mask &= mask.wrapping_sub(1);
+        (lane < BLOCK).then_some(lane)
+    })
+}
+
 /// The lanes of `mask` for which `is_so` holds.
-fn select(mut mask: u16, mut is_so: impl FnMut(usize) -> bool) -> u16 {
-    let mut selected = 0;
-    while mask != 0 {
-        let lane = mask.trailing_zeros();
-        selected |= u16::from(is_so(lane as usize)) << lane;
-        mask &= mask - 1;
-    }
-    selected
+fn select(mask: u16, is_so: impl Fn(usize) -> bool) -> u16 {
+    lanes_of(mask).fold(0, |selected, lane| selected | u16::from(is_so(lane)) << lane)
 }
 
 /// The lanes that [`Frustum::sees`](crate::view::Frustum::sees), as far as the open planes can tell. Straight loops
@@ -124,17 +144,22 @@ fn in_view(block: &Block, lens: &Lens, open: OpenTests) -> u16 {
 
 /// The lanes whose projected diameter, at a bias of 1, is below `min_size_px`.
 fn small_lanes(block: &Block, lens: &Lens, min_size_px: f32) -> u16 {
-    let mut small = [0; BLOCK];
+    let distances = distances(block, lens);
+    bits(&std::array::from_fn(|lane| {
+        u32::from(size_px(lens, block.radius[lane], distances[lane]) < min_size_px)
+    }))
+}
+
+/// [`Lens::distance`] to every lane's centre.
+pub(super) fn distances(block: &Block, lens: &Lens) -> [f32; BLOCK] {
     let eye = lens.eye;
-    for (lane, small) in small.iter_mut().enumerate() {
+    std::array::from_fn(|lane| {
         let d = Vec3::new(block.x[lane] - eye.x, block.y[lane] - eye.y, block.z[lane] - eye.z);
-        let distance = if lens.perspective { length(d).max(lens.near) } else { 1.0 };
-        *small = u32::from(size_px(lens, block.radius[lane], distance) < min_size_px);
-    }
-    bits(&small)
+        if lens.perspective { length(d).max(lens.near) } else { 1.0 }
+    })
 }
 
 /// Bit per lane from a 0 or 1 per lane.
-fn bits(lanes: &[u32; BLOCK]) -> u16 {
+pub(super) fn bits(lanes: &[u32; BLOCK]) -> u16 {
     lanes.iter().enumerate().fold(0, |mask, (lane, &bit)| mask | bit << lane) as u16
 }

@@ -1,6 +1,7 @@
 //! Culling without a tree.
 
 use super::lanes::Cull;
+use super::value::ValueFloor;
 use super::{CullOptions, CullReport, VisibleBlock};
 use crate::scene::Objects;
 use crate::view::Lens;
@@ -15,9 +16,20 @@ pub fn linear(
     options: &CullOptions,
     visible: &mut Vec<VisibleBlock>,
 ) -> CullReport {
-    let mut cull = Cull::new(objects, lens, options, visible);
-    for block in 0..objects.blocks().len() {
-        cull.test(block, cull.tests());
+    linear_above(objects, lens, options, &ValueFloor::NONE, visible)
+}
+
+/// [`linear`] that passes over what is worth too little.
+pub fn linear_above(
+    objects: &Objects,
+    lens: &Lens,
+    options: &CullOptions,
+    floor: &ValueFloor<'_>,
+    visible: &mut Vec<VisibleBlock>,
+) -> CullReport {
+    let mut cull = Cull::new(objects, lens, options, floor, visible);
+    for (index, block) in objects.blocks().iter().enumerate() {
+        cull.test(index, block.live, cull.tests());
     }
     cull.report
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::order::SpatialOrder;
 use crate::bounds::{Aabb, Sphere};
 
 /// Bits per axis: three times as many fit a word.
@@ -9,14 +10,13 @@ const BITS: u32 = 21;
 
 /// Sorts spheres by the Morton code of their centres, ties by index. Keeps its buffers.
 #[derive(Clone, Default)]
-pub(super) struct SpatialOrder {
+pub(super) struct Curve {
     codes: Vec<(u64, u32)>,
     order: Vec<u32>,
 }
 
-impl SpatialOrder {
-    /// Indices of the spheres, near ones next to each other. The spheres must be finite.
-    pub fn order(&mut self, spheres: &[Sphere]) -> &[u32] {
+impl SpatialOrder for Curve {
+    fn order(&mut self, spheres: &[Sphere]) -> &[u32] {
         let bounds = Aabb::around(spheres.iter().map(|s| s.center));
         let corner = bounds.min.as_dvec3();
         let extent = (bounds.max.as_dvec3() - corner).max_element().max(f64::MIN_POSITIVE);
@@ -62,13 +62,13 @@ mod tests {
     fn corners_of_a_cube_follow_the_curve() {
         let corner = |i: u32| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32);
         let spheres: Vec<Sphere> = (0..8).rev().map(|i| Sphere::new(corner(i), 0.5)).collect();
-        assert_eq!(SpatialOrder::default().order(&spheres), [7, 6, 5, 4, 3, 2, 1, 0]);
+        assert_eq!(Curve::default().order(&spheres), [7, 6, 5, 4, 3, 2, 1, 0]);
     }
 
     #[test]
     fn spheres_in_one_place_keep_their_order() {
         let spheres = [Sphere::new(Vec3::splat(3.0), 1.0); 5];
-        assert_eq!(SpatialOrder::default().order(&spheres), [0, 1, 2, 3, 4]);
-        assert!(SpatialOrder::default().order(&[]).is_empty());
+        assert_eq!(Curve::default().order(&spheres), [0, 1, 2, 3, 4]);
+        assert!(Curve::default().order(&[]).is_empty());
     }
 }

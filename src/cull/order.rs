@@ -1,69 +1,104 @@
 //! In what order objects are laid into slots.
 
+use std::cmp::Reverse;
+use std::ops::Range;
+
 use super::node::is_tame;
+use super::value::{KeptSlopes, worth};
 use crate::bounds::Sphere;
 use crate::scene::{BLOCK, ObjectId, Objects};
 
-#[cfg(feature = "bvh")]
-use super::bvh::SpatialOrder;
-#[cfg(not(feature = "bvh"))]
-use super::morton::SpatialOrder;
+/// Lists spheres so that near ones are next to each other.
+pub(super) trait SpatialOrder {
+    /// Indices of the spheres, which must be finite and far from overflow.
+    fn order(&mut self, spheres: &[Sphere]) -> &[u32];
+}
 
-/// Finds an arrangement in which objects that are near each other share a block, from nothing but the objects: the
-/// slots that they are in, or the order in which they came, make no difference.
+/// Finds an arrangement in which objects that are near each other and of one class share a block, from nothing but the
+/// objects: the slots that they are in, or the order in which they came, make no difference.
 #[derive(Clone, Default)]
-pub(super) struct Arranger {
-    /// Occupied slots by rank: tame live objects, live ones that are beyond boxes, and those that are not live; by
-    /// id among themselves.
-    ranked: Vec<(Rank, ObjectId, u32)>,
-    /// Bounds of the tame ones, by rank.
+pub(super) struct Arranger<S> {
+    /// Occupied slots by kind, and by id among themselves.
+    ranked: Vec<(Kind, ObjectId, u32)>,
+    /// Bounds of one kind, by rank.
     spheres: Vec<Sphere>,
-    spatial: SpatialOrder,
+    spatial: S,
     slots: Vec<u32>,
 }
 
 /// Kinds of objects that should not share a block.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Rank {
-    Tame,
+enum Kind {
+    /// Live, and never left out for its worth.
+    Needed,
+    /// Live, and may be left out: the higher the class, the less it is worth. A floor passes over blocks of what is
+    /// worth little from near on, and would have to look into every block if some of its objects were worth much.
+    Skippable(Reverse<i16>),
+    /// Live, but beyond boxes.
     Untame,
     Absent,
 }
 
-impl Arranger {
-    /// The occupied slots in the order in which they should be arranged.
-    pub fn arrange(&mut self, objects: &Objects) -> &[u32] {
-        self.rank(objects);
-        let tame = self.ranked.partition_point(|&(rank, ..)| rank == Rank::Tame);
-        self.spheres.clear();
-        self.spheres.extend(self.ranked[..tame].iter().map(|&(_, _, slot)| sphere(objects, slot)));
-        let order = self.spatial.order(&self.spheres);
+impl<S: SpatialOrder> Arranger<S> {
+    /// The occupied ones of `slots` in the order in which they should be arranged. Worth is taken at these slopes.
+    pub fn arrange(&mut self, objects: &Objects, slots: Range<usize>, slopes: &KeptSlopes) -> &[u32] {
+        self.rank(objects, slots, slopes);
         self.slots.clear();
-        self.slots.extend(order.iter().map(|&i| self.ranked[i as usize].2));
-        self.slots.extend(self.ranked[tame..].iter().map(|&(_, _, slot)| slot));
+        for run in self.ranked.chunk_by(|a, b| a.0 == b.0) {
+            match run[0].0 {
+                Kind::Needed | Kind::Skippable(_) => {
+                    self.spheres.clear();
+                    self.spheres.extend(run.iter().map(|&(_, _, slot)| sphere(objects, slot)));
+                    let order = self.spatial.order(&self.spheres);
+                    self.slots.extend(order.iter().map(|&i| run[i as usize].2));
+                }
+                Kind::Untame | Kind::Absent => self.slots.extend(run.iter().map(|&(_, _, slot)| slot)),
+            }
+        }
         &self.slots
     }
 
-    fn rank(&mut self, objects: &Objects) {
-        let slots = 0..(objects.blocks().len() * BLOCK) as u32;
-        let occupied = slots.filter_map(|slot| Some((objects.id_of(slot as usize)?, slot)));
+    fn rank(&mut self, objects: &Objects, slots: Range<usize>, slopes: &KeptSlopes) {
+        let occupied = slots.filter_map(|slot| Some((objects.id_of(slot)?, slot as u32)));
         self.ranked.clear();
-        self.ranked.extend(occupied.map(|(id, slot)| (rank_of(objects, slot), id, slot)));
+        self.ranked.extend(occupied.map(|(id, slot)| (kind_of(objects, slot, slopes), id, slot)));
         self.ranked.sort_unstable();
     }
 }
 
-fn rank_of(objects: &Objects, slot: u32) -> Rank {
-    let (block, lane) = (&objects.blocks()[slot as usize / BLOCK], slot as usize % BLOCK);
-    if block.live & (1 << lane) == 0 {
-        Rank::Absent
-    } else if is_tame(&block.sphere(lane)) {
-        Rank::Tame
+fn kind_of(objects: &Objects, slot: u32, slopes: &KeptSlopes) -> Kind {
+    let (index, lane) = (slot as usize / BLOCK, slot as usize % BLOCK);
+    let block = &objects.blocks()[index];
+    let has = |mask: u16| mask & (1 << lane) != 0;
+    if !has(block.live) {
+        Kind::Absent
+    } else if !is_tame(&block.sphere(lane)) {
+        Kind::Untame
+    } else if !has(block.skippable) {
+        Kind::Needed
     } else {
-        Rank::Untame
+        let worth = worth(objects, index, lane, Some(slopes.of(block.table[lane])));
+        Kind::Skippable(Reverse(class_of(worth)))
     }
+}
+
+/// Worths of a class are within a factor of 8 of each other: the radii of equal objects within 2.8.
+fn class_of(worth: f64) -> i16 {
+    let exponent = (worth.to_bits() >> 52) as i16 - 1023;
+    exponent.div_euclid(3)
 }
 
 fn sphere(objects: &Objects, slot: u32) -> Sphere {
     objects.blocks()[slot as usize / BLOCK].sphere(slot as usize % BLOCK)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_class_spans_a_factor_of_eight() {
+        assert_eq!([1.0, 7.99, 8.0, 64.0, 0.99, 0.125, 0.124].map(class_of), [0, 0, 1, 2, -1, -1, -2]);
+        assert_eq!([class_of(0.0), class_of(f64::MAX)], [-341, 341]);
+    }
 }

@@ -2,9 +2,16 @@
 
 use std::ops::Range;
 
-use super::node::Node;
+use super::boxes::Boxes;
+#[cfg(feature = "bvh")]
+use super::bvh::Hierarchy as Global;
+#[cfg(not(feature = "bvh"))]
+use super::morton::Curve as Global;
+use super::node::{Limits, Node};
 use super::order::Arranger;
-use crate::scene::Objects;
+use super::repair::Repairs;
+use super::value::{Floor, KeptSlopes};
+use crate::scene::{BLOCK, Objects};
 
 /// Children of a node. 4 to 16 are sensible: fewer make the tree higher, more make its boxes coarser.
 pub(super) const FAN_OUT: usize = 8;
@@ -13,37 +20,72 @@ pub(super) const FAN_OUT: usize = 8;
 /// tested in a microsecond anyway, and leaves larger scenes unsorted.
 const SMALL_BLOCKS: usize = 4;
 
-/// Share of the objects that may be out of order (holes, and objects that came since the last order) before the
-/// tree re-arranges them. 0 to 1; smaller keeps boxes tight and slots full, larger sorts less often.
-const DISORDER: f64 = 0.1;
+/// By how much a store has to grow after an order, or how many times its objects its slots have to be, before it is
+/// ordered anew as a whole. Above 1; smaller orders more often, larger leaves more of the objects to repairs.
+const OUTGROWN: usize = 2;
 
-/// Growth of the blocks' summed half-area since the last order at which the tree re-arranges. Above 1; smaller keeps
-/// boxes tight while objects move, larger sorts less often. A frame's cost grows about as the area does.
-const GROWTH: f32 = 2.0;
+/// Blocks whose worth is brought to newly expected slopes in an update: about 0.2 ms of work.
+const REPRICED_BLOCKS: usize = 1024;
 
-/// Updates with changes that have to pass after an order before growth alone may ask for another. From 0 up; smaller
-/// sorts a scene in full motion more often, larger lets it be culled with worse boxes for longer.
-const REST: u32 = 32;
+/// By how much two slopes may come to differ from how they compared when the nodes' worth was made, before it is made
+/// anew. Above 1; smaller renews more often, larger passes over less.
+const DRIFT: f64 = 1.5;
 
 /// Boxes over the blocks of one [`Objects`], as an implicit tree: level 0 has a node per block, every level above
 /// one per 8 below, and the last a single root. Kept for as long as the objects are; one per store.
 ///
-/// Memory: about 3.5 bytes per object, and what arranging keeps for the next time: 260 more with the feature `bvh`, 70
-/// without it, until [`BlockTree::shrink`].
+/// Memory: about 4.5 bytes per object; 260 more, or 70 without the feature `bvh`, while all objects are ordered.
 #[derive(Clone, Default)]
 pub struct BlockTree {
-    /// The nodes, level by level; node `i` of a level is over nodes `8 i .. 8 i + 8` of the level before.
-    levels: Vec<Vec<Node>>,
+    /// Node `i` of a level is over nodes `8 i .. 8 i + 8` of the level before.
+    levels: Vec<Siblings>,
     /// Live bits per block: what accepting a subtree copies.
     live: Vec<u16>,
     /// The revision of the objects that the nodes stand for.
     revision: u64,
-    /// The root's area after the last order; `None` before the first.
-    ordered_area: Option<f32>,
-    /// Updates with changes since the last order.
-    since_order: u32,
-    arranger: Arranger,
+    /// How many objects were last ordered; `None` before the first time.
+    ordered: Option<usize>,
+    /// The slopes that the nodes' worth is kept at, but for nodes from block `repriced` on.
+    slopes: KeptSlopes,
+    /// The slopes of those.
+    former: KeptSlopes,
+    repriced: usize,
+    pub(super) repairs: Repairs,
     stale: Vec<u32>,
+}
+
+/// The nodes of a level: their boxes in groups of siblings, and what else is known of them, which is only looked at
+/// where a limit is open.
+#[derive(Clone, Default)]
+pub(super) struct Siblings {
+    boxes: Vec<Boxes>,
+    pub limits: Vec<Limits>,
+}
+
+impl Siblings {
+    pub fn node(&self, index: usize) -> Node {
+        Node { aabb: self.boxes[index / FAN_OUT].get(index % FAN_OUT), limits: self.limits[index] }
+    }
+
+    fn set(&mut self, index: usize, node: &Node) {
+        self.boxes[index / FAN_OUT].set(index % FAN_OUT, &node.aabb);
+        self.limits[index] = node.limits;
+    }
+
+    /// The node over group `group`.
+    fn over(&self, group: usize) -> Node {
+        let nodes = group * FAN_OUT..((group + 1) * FAN_OUT).min(self.limits.len());
+        nodes.fold(Node::EMPTY, |node, index| node.union(&self.node(index)))
+    }
+
+    /// Makes room for so many nodes; new ones are empty.
+    fn resize(&mut self, len: usize) {
+        for index in len..self.limits.len() {
+            self.set(index, &Node::EMPTY);
+        }
+        self.limits.resize(len, Node::EMPTY.limits);
+        self.boxes.resize(len.div_ceil(FAN_OUT), Boxes::EMPTY);
+    }
 }
 
 /// What an update did.
@@ -51,7 +93,9 @@ pub struct BlockTree {
 pub struct UpdateReport {
     /// Blocks whose boxes were renewed.
     pub blocks_refitted: usize,
-    /// Whether the objects were re-arranged; their slots have changed then.
+    /// Objects that were laid into other slots, [repairing](BlockTree::update) the order.
+    pub objects_repaired: usize,
+    /// Whether all objects were re-arranged.
     pub reordered: bool,
 }
 
@@ -61,33 +105,59 @@ impl BlockTree {
         Self::default()
     }
 
-    /// Brings the tree up to date: renews the boxes of the blocks that changed and of those above them, and, when it
-    /// pays, re-arranges the objects so that near ones share a block. The first update of all but tiny stores does.
+    /// Brings the tree up to date: renews the boxes of the blocks that changed and of those above them, and keeps the
+    /// objects arranged so that near ones share a block.
     ///
-    /// Cost: nothing when nothing changed, else one look at every block's revision, 0.1 to 0.5 µs per changed block,
-    /// and when re-arranging about 1 µs per object. Nothing is allocated but for blocks that are new, and while
-    /// re-arranging.
+    /// The first update of all but tiny stores arranges all objects, and so does one of a store that has doubled since
+    /// or has become half empty: about 1 µs per object, as [`BlockTree::rearrange`]. All others repair the order where it
+    /// has suffered most, a thousand objects or two at a time: about a millisecond, and more only where so many blocks
+    /// changed that renewing their boxes takes four times as long.
+    ///
+    /// Cost otherwise: nothing when nothing changed, else one look at every block's revision, and 0.1 to 0.2 µs per
+    /// changed block. Nothing is allocated but for blocks that are new, and while arranging all.
     pub fn update(&mut self, objects: &mut Objects) -> UpdateReport {
-        if self.is_fresh(objects) {
+        if self.is_outgrown(objects) {
+            return self.rearrange(objects);
+        }
+        if self.is_fresh(objects) && !self.is_repricing() && !self.repairs.is_pending {
             return UpdateReport::default();
         }
-        self.since_order = self.since_order.saturating_add(1);
-        let mut report = UpdateReport::default();
-        if !self.is_disordered(objects) {
-            report.blocks_refitted = self.refit(objects);
+        let mut report = UpdateReport { blocks_refitted: self.refit(objects), ..UpdateReport::default() };
+        if self.ordered.is_some() {
+            report.objects_repaired = self.repair(objects, report.blocks_refitted);
         }
-        if self.is_disordered(objects) || self.has_grown(objects) {
-            self.order(objects);
+        if report.objects_repaired > 0 {
             report.blocks_refitted += self.refit(objects);
-            report.reordered = true;
-            self.ordered_area = Some(self.area());
+            self.settle_repairs();
         }
         report
     }
 
-    /// Gives back the memory that re-arranging keeps for the next time.
-    pub fn shrink(&mut self) {
-        self.arranger = Arranger::default();
+    /// Arranges all objects anew, whatever their state, and brings the tree up to date: for after loading.
+    ///
+    /// Cost: about 1 µs per object.
+    pub fn rearrange(&mut self, objects: &mut Objects) -> UpdateReport {
+        let slots = 0..objects.blocks().len() * BLOCK;
+        objects.reorder(Arranger::<Global>::default().arrange(objects, slots, &self.slopes));
+        self.ordered = Some(objects.len());
+        let blocks_refitted = self.refit(objects);
+        self.settle_all();
+        UpdateReport { blocks_refitted, objects_repaired: 0, reordered: true }
+    }
+
+    /// Tells the tree which slopes floors will have: [`ValueFloor::best_slope`](super::ValueFloor). Their common scale is
+    /// of no matter, only how they compare; a tree that is told nothing assumes that all tables are alike. No answer
+    /// depends on it, only how much is passed over untested. To be called whenever slopes change.
+    ///
+    /// Cost: a nanosecond per table. Where two have come to compare differently by half, the next updates renew what is
+    /// kept, some 0.2 ms each; until then culling keeps to bounds that hold for the old slopes and the new.
+    pub fn expect_slopes(&mut self, best_slope: &[f32]) {
+        if self.is_repricing() || self.slopes.are_alike(best_slope, DRIFT) {
+            return;
+        }
+        std::mem::swap(&mut self.slopes, &mut self.former);
+        self.slopes.keep(best_slope);
+        self.repriced = 0;
     }
 
     /// Whether the tree stands for the objects as they are.
@@ -100,45 +170,64 @@ impl BlockTree {
         self.levels.len().saturating_sub(1)
     }
 
-    pub(super) fn node(&self, level: usize, index: usize) -> &Node {
-        &self.levels[level][index]
+    pub(super) fn boxes(&self, level: usize, group: usize) -> &Boxes {
+        &self.levels[level].boxes[group]
     }
 
-    /// The nodes of the level below that a node is over.
-    pub(super) fn children(&self, level: usize, index: usize) -> Range<usize> {
-        children(&self.levels[level - 1], index)
+    pub(super) fn limits(&self, level: usize, index: usize) -> &Limits {
+        &self.levels[level].limits[index]
+    }
+
+    /// How many nodes there are in a group.
+    pub(super) fn siblings(&self, level: usize, group: usize) -> usize {
+        FAN_OUT.min(self.levels[level].limits.len() - group * FAN_OUT)
+    }
+
+    /// Least and greatest ratio of worth at the slopes of a floor to worth as it is kept.
+    pub(super) fn worth_ratios(&self, floor: &Floor<'_>, tables: usize) -> [f64; 2] {
+        let now = floor.ratios(&self.slopes, tables);
+        if !self.is_repricing() {
+            return now;
+        }
+        let former = floor.ratios(&self.former, tables);
+        [now[0].min(former[0]), now[1].max(former[1])]
+    }
+
+    /// The nodes of a level, which repairs work on.
+    pub(super) fn level(&self, level: usize) -> &Siblings {
+        &self.levels[level]
+    }
+
+    pub(super) fn kept_slopes(&self) -> &KeptSlopes {
+        &self.slopes
+    }
+
+    fn is_repricing(&self) -> bool {
+        self.repriced < self.live.len()
     }
 
     pub(super) fn live(&self) -> &[u16] {
         &self.live
     }
 
-    fn area(&self) -> f32 {
-        self.levels.last().and_then(|top| top.first()).map_or(0.0, |root| root.area)
-    }
-
-    fn is_disordered(&self, objects: &Objects) -> bool {
-        let limit = DISORDER * objects.len() as f64;
-        is_worth_ordering(objects) && (self.ordered_area.is_none() || objects.disorder() as f64 > limit)
-    }
-
-    fn has_grown(&self, objects: &Objects) -> bool {
-        let rested = self.since_order > REST;
-        is_worth_ordering(objects) && rested && self.ordered_area.is_some_and(|a| self.area() > GROWTH * a)
-    }
-
-    fn order(&mut self, objects: &mut Objects) {
-        objects.reorder(self.arranger.arrange(objects));
-        self.since_order = 0;
+    fn is_outgrown(&self, objects: &Objects) -> bool {
+        let slots = objects.blocks().len() * BLOCK;
+        let is_sparse = slots > OUTGROWN * objects.len() + SMALL_BLOCKS * BLOCK;
+        let has_grown = self.ordered.is_none_or(|ordered| objects.len() > OUTGROWN * ordered);
+        objects.blocks().len() > SMALL_BLOCKS && (is_sparse || has_grown)
     }
 
     /// Renews the nodes of the blocks that changed, then level by level those above. Returns how many blocks.
     fn refit(&mut self, objects: &Objects) -> usize {
+        let repricing = self.is_repricing();
+        let until = if repricing { self.repriced + REPRICED_BLOCKS } else { usize::MAX };
         self.shape(objects.blocks().len());
-        self.find_stale(objects);
+        self.find_stale(objects, self.repriced..until);
+        self.repriced = until;
         let refitted = self.stale.len();
         for &index in &self.stale {
-            self.levels[0][index as usize] = Node::of_block(objects, index as usize);
+            let node = Node::of_block(objects, index as usize, &self.slopes);
+            self.levels[0].set(index as usize, &node);
             self.live[index as usize] = objects.blocks()[index as usize].live;
         }
         for level in 1..self.levels.len() {
@@ -150,20 +239,18 @@ impl BlockTree {
         refitted
     }
 
-    /// Lists the blocks that changed since the last refit, in ascending order.
-    fn find_stale(&mut self, objects: &Objects) {
+    /// Lists the blocks that changed since the last refit, and those of `also`, in ascending order.
+    fn find_stale(&mut self, objects: &Objects, also: Range<usize>) {
         self.stale.clear();
         let revisions = objects.block_revisions().iter().enumerate();
-        let newer = revisions.filter(|&(_, &revision)| revision > self.revision);
+        let newer = revisions.filter(|&(at, &revision)| revision > self.revision || also.contains(&at));
         self.stale.extend(newer.map(|(index, _)| index as u32));
     }
 
     fn refit_level(&mut self, level: usize) {
         let (below, above) = self.levels.split_at_mut(level);
-        let below = &below[level - 1];
         for &index in &self.stale {
-            let nodes = &below[children(below, index as usize)];
-            above[0][index as usize] = nodes.iter().fold(Node::EMPTY, |node, child| node.union(child));
+            above[0].set(index as usize, &below[level - 1].over(index as usize));
         }
     }
 
@@ -173,9 +260,9 @@ impl BlockTree {
         let (mut level, mut len) = (0, blocks);
         loop {
             if level == self.levels.len() {
-                self.levels.push(Vec::new());
+                self.levels.push(Siblings::default());
             }
-            self.levels[level].resize(len, Node::EMPTY);
+            self.levels[level].resize(len);
             level += 1;
             if len <= 1 {
                 break;
@@ -184,12 +271,4 @@ impl BlockTree {
         }
         self.levels.truncate(level);
     }
-}
-
-fn children(below: &[Node], index: usize) -> Range<usize> {
-    index * FAN_OUT..((index + 1) * FAN_OUT).min(below.len())
-}
-
-fn is_worth_ordering(objects: &Objects) -> bool {
-    objects.blocks().len() > SMALL_BLOCKS
 }
