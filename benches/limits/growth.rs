@@ -135,6 +135,7 @@ pub fn plot(points: &[Point], file: &Path) -> Result<(), Failure> {
     let mut chart = ChartBuilder::on(&root)
         .caption("A scene that grows around the camera, at a fixed budget", ("sans-serif", 20))
         .margin(14)
+        .margin_right(36)
         .x_label_area_size(46)
         .y_label_area_size(60)
         .build_cartesian_2d((x(first)..x(last)).log_scale(), (0.7..most * 1.3).log_scale())?;
@@ -143,8 +144,8 @@ pub fn plot(points: &[Point], file: &Path) -> Result<(), Failure> {
         .light_line_style(WHITE)
         .bold_line_style(GRID)
         .x_desc("objects in the scene")
-        .y_desc(format!("factor over {} objects", first.objects))
-        .x_label_formatter(&|x| format!("{x:.0}"))
+        .y_desc(format!("factor over {} objects", short(x(first))))
+        .x_label_formatter(&|&x| short(x))
         .y_label_formatter(&|y| format!("{y}"))
         .label_style(("sans-serif", 15))
         .draw()?;
@@ -169,4 +170,9 @@ pub fn plot(points: &[Point], file: &Path) -> Result<(), Failure> {
         .draw()?;
     root.present()?;
     Ok(())
+}
+
+/// A number of objects in thousands or millions.
+fn short(objects: f64) -> String {
+    if objects < 1e6 { format!("{} k", objects / 1e3) } else { format!("{} M", objects / 1e6) }
 }

@@ -30,6 +30,7 @@ mod warm;
 
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Instant;
 
 use plan::Plan;
 use report::{Failure, Findings};
@@ -53,14 +54,23 @@ fn main() -> ExitCode {
 
 /// Measures, prints, and writes what is worth keeping.
 fn run(plan: &Plan) -> Result<Findings, Failure> {
-    let mut findings = Findings::default();
+    let (mut findings, start) = (Findings::default(), Instant::now());
+    let progress = |what: &str| eprintln!("limits: {:4.0} s, {what}", start.elapsed().as_secs_f64());
+    progress("everything in view");
     warm::measure(plan, &mut findings);
+    progress("culling");
     culls::measure(plan, &mut findings);
+    progress("a fifth in view");
     frames::measure(plan, &mut findings);
+    progress("growth");
     let points = growth::measure(plan, &mut findings);
+    progress("costs of two stages");
     general::measure(plan, &mut findings);
+    progress("exactness");
     exactness::measure(plan, &mut findings);
+    progress("more");
     more::measure(plan, &mut findings);
+    progress("done");
     println!("{}{}", findings.table(), findings.more_tables());
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
     if plan.is_whole() && findings.refused().next().is_none() {

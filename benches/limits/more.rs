@@ -1,5 +1,6 @@
 //! Figures without goals: sizes, policies, moving objects, cold caches, teleports.
 
+use std::cell::RefCell;
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -103,8 +104,7 @@ fn per_object(plan: &Plan, place: &mut Place, findings: &mut Findings) {
 /// Times frames of a moving camera, and on their candidates the selection stage by itself.
 fn frames_of(policy: Policy, place: &mut Place, view: View, rounds: usize) -> Times {
     let (mut frames, mut stage) = (Loop::new(policy), SelectStage::new(policy));
-    let place = std::cell::RefCell::new(place);
-    let frames = std::cell::RefCell::new(&mut frames);
+    let (place, frames) = (RefCell::new(place), RefCell::new(&mut frames));
     let contestants = vec![
         Contestant::new("frame", |round| place.borrow_mut().frame(&mut frames.borrow_mut(), view, round)),
         Contestant::new("select", |_| {
@@ -114,20 +114,31 @@ fn frames_of(policy: Policy, place: &mut Place, view: View, rounds: usize) -> Ti
     race(rounds, contestants)
 }
 
+/// Shares of all objects that move, in percent, and the names of the frames and of the calls.
+const MOVING: [(usize, &str, &str); 4] = [
+    (0, "none moves: frame", "none moves: no call"),
+    (1, "1 % move: frame", "1 % move: calls of set_bounds"),
+    (10, "10 % move: frame", "10 % move: calls of set_bounds"),
+    (100, "all move: frame", "all move: calls of set_bounds"),
+];
+
 /// A share of all objects lifted by a metre before each frame, or let down again.
 fn moving(plan: &Plan, place: &mut Place, findings: &mut Findings) {
-    for percent in [0, 1, 10, 100] {
-        let mut frames = Loop::new(Policy::Predictive);
-        let mut moves = Duration::ZERO;
-        let contestants = vec![Contestant::new("frame", |round| {
-            moves = timed(|| lift(place, percent, round));
-            place.frame(&mut frames, place.fifth, round)
-        })];
-        let times = race(plan.rounds(ROUNDS), contestants);
-        let name = |what: &str| format!("{percent} % of {} move: {what}", place.scene.len());
-        let heading = "Moving objects, a fifth in view, ms";
-        findings.more(heading, &name("frame"), times.ns("frame").map(|ns| ns * 1e-6));
-        findings.more(heading, &name("calls of set_bounds"), Some(moves.as_secs_f64() * 1e3));
+    let fifth = place.fifth;
+    let (place, frames) = (RefCell::new(place), RefCell::new(Loop::new(Policy::Predictive)));
+    let (place, frames) = (&place, &frames);
+    let pair = |(percent, frame, calls): (usize, &'static str, &'static str)| {
+        [
+            Contestant::new(calls, move |round| timed(|| lift(&mut place.borrow_mut(), percent, round))),
+            Contestant::new(frame, move |round| {
+                place.borrow_mut().frame(&mut frames.borrow_mut(), fifth, round)
+            }),
+        ]
+    };
+    let times = race(plan.rounds(ROUNDS), MOVING.into_iter().flat_map(pair).collect());
+    for name in MOVING.iter().flat_map(|&(_, frame, calls)| [frame, calls]) {
+        let heading = "Moving objects of a million, a fifth in view, ms";
+        findings.more(heading, name, times.ns(name).map(|ns| ns * 1e-6));
     }
 }
 

@@ -186,7 +186,14 @@ impl Findings {
         let mut text = "name,value,goal,sense\n".to_owned();
         for row in ROWS {
             if let Some(Ok(value)) = self.value(&row) {
-                let _ = writeln!(text, "{},{value:e},{},{}", row.name, row.goal, row.sense.code());
+                let _ = writeln!(
+                    text,
+                    "{},{},{},{}",
+                    row.name,
+                    significant(*value, 6),
+                    row.goal,
+                    row.sense.code()
+                );
             }
         }
         text
@@ -211,14 +218,19 @@ impl Findings {
     }
 }
 
-/// Four significant digits.
+/// A number for the tables.
 fn figure(value: f64) -> String {
-    let digits = |n: i32| n.max(0) as usize;
+    significant(value, 4)
+}
+
+/// So many significant digits, two fewer where it takes an exponent.
+fn significant(value: f64, count: usize) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
-        size if !(1e-3..1e7).contains(&size) => format!("{value:.1e}"),
+        size if !(1e-3..1e7).contains(&size) => format!("{value:.*e}", count - 3),
         size => {
-            let text = format!("{value:.*}", digits(3 - size.log10().floor() as i32));
+            let decimals = count as i32 - 1 - size.log10().floor() as i32;
+            let text = format!("{value:.*}", decimals.max(0) as usize);
             if text.contains('.') {
                 text.trim_end_matches('0').trim_end_matches('.').to_owned()
             } else {

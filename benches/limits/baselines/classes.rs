@@ -140,15 +140,25 @@ impl Classes<'_> {
 
     /// Takes steps in the order of ascending keys up to the first that does not fit.
     pub fn take(&self, sorted: &[u64], budget: u64, position: &mut [u8]) {
-        position.fill(0);
         let mut room = budget.saturating_sub(self.least_units());
-        for &key in sorted {
+        let cut = sorted.iter().find(|&&key| {
             let units = self.step_units(key);
-            if units > room {
-                break;
-            }
-            room -= units;
-            position[step_of(key).object()] += 1;
+            let fits = units <= room;
+            room -= if fits { units } else { 0 };
+            !fits
+        });
+        self.take_below(cut.copied().unwrap_or(u64::MAX), position);
+    }
+
+    /// Every object takes its steps below the cut, objects ascending, without branches.
+    pub fn take_below(&self, cut: u64, position: &mut [u8]) {
+        for (object, at) in position.iter_mut().enumerate() {
+            let (hull, weight) = (self.hull(object), self.weight[object]);
+            let is_taken = |from: usize| {
+                let below = key(weight * hull.slope[from], StepIndex::new(object, from)) < cut;
+                (from < usize::from(hull.last)) & below
+            };
+            *at = (0..MOST_STEPS).map(|from| u8::from(is_taken(from))).sum();
         }
     }
 

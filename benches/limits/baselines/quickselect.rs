@@ -2,7 +2,7 @@
 //! is then compared with it. O(steps) on average.
 
 use super::Selection;
-use super::classes::{Classes, StepIndex, key};
+use super::classes::Classes;
 
 /// A step's key and its cost.
 #[derive(Clone, Copy, Default)]
@@ -32,7 +32,7 @@ impl Selection for Quickselect {
         self.spare.resize(self.steps.len().max(self.spare.len()), Priced::default());
         let room = budget.saturating_sub(classes.least_units());
         let cut = critical(&mut self.steps, &mut self.spare, room);
-        take_below(classes, cut, position);
+        classes.take_below(cut, position);
     }
 }
 
@@ -72,20 +72,12 @@ fn partition(from: &[Priced], to: &mut [Priced], pivot: u64) -> (usize, u64) {
     let (mut front, mut back, mut units) = (0, to.len() - 1, 0);
     for &step in from {
         let is_below = step.key <= pivot;
-        to[if is_below { front } else { back }] = step;
+        // To both ends; what is wrong at one of them is overwritten later.
+        to[front] = step;
+        to[back] = step;
         front += usize::from(is_below);
         back = back.wrapping_sub(usize::from(!is_below));
         units += u64::from(step.units) * u64::from(is_below);
     }
     (front, units)
-}
-
-/// Every object takes its steps below the cut.
-fn take_below(classes: &Classes<'_>, cut: u64, position: &mut [u8]) {
-    for (object, at) in position.iter_mut().enumerate() {
-        let (hull, weight) = (classes.hull(object), classes.weight[object]);
-        let taken = |from: usize| key(weight * hull.slope[from], StepIndex::new(object, from)) < cut;
-        let steps = hull.slope[..hull.slope.len() - 1].iter().enumerate();
-        *at = steps.map(|(from, _)| u8::from((from < usize::from(hull.last)) & taken(from))).sum();
-    }
 }
