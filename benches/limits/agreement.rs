@@ -2,9 +2,11 @@
 
 use crate::baselines::classes::{Classes, Totals};
 
-/// Benefits may differ by so much of the gain over the cheapest choice. Slopes that differ in the last bit swap places at the cut.
+/// Benefits may differ by so much of the gain over the cheapest choice. Slopes that differ in the last bit swap
+/// places at the cut.
 const ROUNDING: f64 = 1e-6;
-/// What a fill may add to the textbook's answer, which ends at the first step that does not fit: so many average gains.
+/// What a fill may add to the textbook's answer, which ends at the first step that does not fit: so many average
+/// gains.
 const FILL: f64 = 32.0;
 
 /// Refuses a baseline that does not give the textbook's answer, bit for bit.
@@ -32,8 +34,8 @@ impl Reference {
         Self { textbook: classes.totals(textbook), least, budget, classes: classes.len() }
     }
 
-    /// Refuses a choice that is over the budget, worse than the textbook's, or better than a fill can explain. Otherwise
-    /// says by how much it is better.
+    /// Refuses a choice that is over the budget, worse than the textbook's, or better than a fill can explain.
+    /// Otherwise says by how much it is better.
     pub fn check(&self, ours: Totals) -> Result<f64, String> {
         let gain = self.textbook.benefit - self.least.benefit;
         let surplus = (ours.benefit - self.textbook.benefit) / gain;

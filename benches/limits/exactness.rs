@@ -35,8 +35,8 @@ pub struct Answer {
 }
 
 impl Problem {
-    /// At random: two to six levels, weights of three orders of magnitude, a budget anywhere on the way from the least to
-    /// the most.
+    /// At random: two to six levels, weights of three orders of magnitude, a budget anywhere on the way from the
+    /// least to the most.
     fn random(dice: &mut Pcg64, classes: usize, tables: usize) -> Self {
         let tables: Vec<Vec<Choice>> = (0..tables).map(|_| table(dice)).collect();
         let weight = |dice: &mut Pcg64| 10f32.powf(dice.random_range(0.0f32..3.0));

@@ -74,8 +74,8 @@ pub fn measure(plan: &Plan, findings: &mut Findings) {
     findings.row("predictive_vs_static", times.ratio("frame", "static"));
 }
 
-/// Checks that the frames of both baselines and the crate see the same and give the textbook's answer. Returns by how much the
-/// crate's is better.
+/// Checks that the frames of both baselines and the crate see the same and give the textbook's answer. Returns by
+/// how much the crate's is better.
 fn agree(
     place: &Place,
     textbook: &mut TextbookFrame<'_>,

@@ -6,8 +6,8 @@
 //! cargo bench --bench limits -- --only warm_vs_sort
 //! ```
 //!
-//! Only a whole run writes `docs/limits.csv`, `docs/limits.md` and `docs/growth.svg`. Exit status 1 when a row was refused
-//! because its answers are wrong, 2 when the arguments are.
+//! Only a whole run writes `docs/limits.csv`, `docs/limits.md` and `docs/growth.svg`. Exit status 1 when a row
+//! was refused because its answers are wrong, 2 when the arguments are.
 
 mod agreement;
 mod baselines;
@@ -71,10 +71,10 @@ fn run(plan: &Plan) -> Result<Findings, Failure> {
     progress("more");
     more::measure(plan, &mut findings);
     progress("done");
-    println!("{}{}", findings.table(), findings.more_tables());
+    println!("{}{}", findings.table(plan), findings.more_tables());
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
     if plan.is_whole() && findings.refused().next().is_none() {
-        findings.write(&docs)?;
+        findings.write(plan, &docs)?;
         growth::plot(&points, &docs.join("growth.svg"))?;
     }
     Ok(findings)

@@ -270,8 +270,8 @@ impl FrameSolver {
     }
 }
 
-/// The general solver asks whether to stop after each pass over a list of partial choices. So many passes it is given;
-/// half of all instances of 100 classes need up to 20, and the hardest of a thousand 200.
+/// The general solver asks whether to stop after each pass over a list of partial choices. So many passes it is
+/// given; half of all instances of 100 classes need up to 20, and the hardest of a thousand 200.
 const PASSES: usize = 64;
 
 /// Whether the general solver's core search proves an optimum within so many passes. A count, so that it repeats.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 /// Who is timed: called once per round with the round's number, it returns how long it took.
 pub struct Contestant<'a> {
     name: &'static str,
-    /// It runs in every so manieth round.
+    /// It runs in rounds that are a multiple of this.
     every: usize,
     run: Box<dyn FnMut(usize) -> Duration + 'a>,
 }
@@ -15,7 +15,7 @@ impl<'a> Contestant<'a> {
         Self { name, every: 1, run: Box::new(run) }
     }
 
-    /// Sits out all rounds but every so manieth, since it takes long.
+    /// Runs only in rounds that are a multiple of `every`, for who takes long.
     pub fn every(self, every: usize) -> Self {
         Self { every, ..self }
     }

@@ -1,10 +1,12 @@
-//! The rows, their goals, and how they are told: a table on the terminal, and `limits.csv` and `limits.md` in `docs/`.
+//! The rows, their goals, and how they are told: a table on the terminal, and `limits.csv` and `limits.md` in
+//! `docs/`.
 
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
 use crate::machine;
+use crate::plan::Plan;
 
 /// Anything that can go wrong while a report is written.
 pub type Failure = Box<dyn std::error::Error>;
@@ -143,11 +145,11 @@ impl Findings {
         self.values.iter().filter_map(|(name, value)| Some((*name, value.as_ref().err()?.as_str())))
     }
 
-    /// The rows that were asked for, as a table in Markdown.
-    pub fn table(&self) -> String {
+    /// The rows of the plan, as a table in Markdown.
+    pub fn table(&self, plan: &Plan) -> String {
         let mut text =
             "| name | value | goal | met | what | note |\n|---|---:|---:|---|---|---|\n".to_owned();
-        for row in ROWS {
+        for row in ROWS.into_iter().filter(|row| plan.wants(row.name)) {
             let Some(value) = self.value(&row) else { continue };
             let (value, met) = match value {
                 Ok(value) => (figure(*value), if row.sense.is_met(*value, row.goal) { "yes" } else { "no" }),
@@ -200,20 +202,20 @@ impl Findings {
     }
 
     /// Writes `limits.csv` and `limits.md`.
-    pub fn write(&self, docs: &Path) -> Result<(), Failure> {
+    pub fn write(&self, plan: &Plan, docs: &Path) -> Result<(), Failure> {
         fs::create_dir_all(docs)?;
         fs::write(docs.join("limits.csv"), self.csv())?;
-        fs::write(docs.join("limits.md"), self.page())?;
+        fs::write(docs.join("limits.md"), self.page(plan))?;
         Ok(())
     }
 
-    fn page(&self) -> String {
+    fn page(&self, plan: &Plan) -> String {
         let machine = machine::description().into_iter();
         let machine = machine.fold(String::new(), |mut text, (name, value)| {
             let _ = writeln!(text, "| {name} | {value} |");
             text
         });
-        let (table, more) = (self.table(), self.more_tables());
+        let (table, more) = (self.table(plan), self.more_tables());
         format!("{HEAD}\n{table}\n{HOW}\n## The machine\n\n| | |\n|---|---|\n{machine}\n## More\n{more}")
     }
 }
@@ -257,37 +259,40 @@ const HOW: &str = "## How it is measured
 The target features below say which build made the page.
 
 **Rounds.** Everything that a ratio is made of is timed in the same rounds, one after the other: the stream, the
-crate, each baseline, and again. A ratio is that of the tenth percentiles over the rounds. The camera moves half a
-metre per round. *Stream* is a streaming read of 16 bytes per object of the scene.
+crate, each baseline, and again. A ratio is that of the tenth percentiles over the rounds. The camera moves half
+a metre per round. *Stream* is a streaming read of 16 bytes per object of the scene.
 
-**Scene.** A million objects from a seed, scattered over a square of ground, 256 tables of two to six levels, radii from
-0.25 m to 64 m, importances from a half to two. They come in no spatial order. Costs are 0.25 µs per draw and 1/1024 µs per
-triangle and vertex; the budget is two fifths of the way from the least to the most that what is in view can cost.
+**Scene.** A million objects from a seed, scattered over a square of ground, 256 tables of two to six levels,
+radii from 0.25 m to 64 m, importances from a half to two. They come in no spatial order. Costs are 0.25 µs per
+draw and 1/1024 µs per triangle and vertex; the budget is two fifths of the way from the least to the most that
+what is in view can cost.
 
-**What a row includes.** `warm_*`, `cold_*`, `frame_*`, `general_*` and `growth_*` time a whole `Runtime::frame`: the look for changes,
-culling, rating, selection with its certificate, hard transitions, the list of changes, and the prediction of the frame's time;
-nothing is subtracted. The policy is `Predictive` with switches free of charge, which is the textbook's
-objective; the default prices are under *More*. The baselines go from spheres to a level for each object and
-leave the rest out. `cull*` time `BlockTree::cull`, which lists blocks with a mask each; a list of indices is what the box query
-makes. `cold_vs_stream` wipes the policy's memory (its λ), not the runtime's of what was shown; a whole teleport,
-every object coming into view in one frame, is under *More*.
+**What a row includes.** `warm_*`, `cold_*`, `frame_*`, `general_*` and `growth_*` time a whole
+`Runtime::frame`: the look for changes, culling, rating, selection with its certificate, hard transitions, the
+list of changes, and the prediction of the frame's time; nothing is subtracted. The policy is `Predictive` with
+switches free of charge, which is the textbook's objective; the default prices are under *More*. The baselines
+go from spheres to a level for each object and leave the rest out. `cull*` time `BlockTree::cull`, which lists
+blocks with a mask each; a list of indices is what the box query makes. `cold_vs_stream` wipes the policy's
+memory (its λ), not the runtime's of what was shown; a whole teleport, every object coming into view in one
+frame, is under *More*.
 
-**Same answers.** Before anything is timed the sorts, quickselect and the heap have to give the choice of the textbook greedy bit for
-bit, and the crate's has to be within the budget and as good to a millionth of the gain; a row whose answers differ is refused. All take
-steps up to the first that does not fit; the crate fills what is left, which is the gain that its note tells. The rule of 1993 has its
-own answer.
+**Same answers.** Before anything is timed the sorts, quickselect and the heap have to give the choice of the
+textbook greedy bit for bit, and the crate's has to be within the budget and as good to a millionth of the gain;
+a row whose answers differ is refused. All take steps up to the first that does not fit; the crate fills what is
+left, which is the gain that its note tells. The rule of 1993 has its own answer.
 
-**Baselines.** All of them are in `benches/limits/baselines/`, one algorithm per file, warm buffers, nothing allocated in a
-round. They read columns in the order of the objects, and hulls are shared per table as the crate's are. The strong frame keeps its objects along a
-Morton curve. The box query is given the exact box of the view.
+**Baselines.** All of them are in `benches/limits/baselines/`, one algorithm per file, warm buffers, nothing
+allocated in a round. They read columns in the order of the objects, and hulls are shared per table as the
+crate's are. The strong frame keeps its objects along a Morton curve. The box query is given the exact box of
+the view.
 
-**Growth.** The scene grows around a camera in its middle that sees a quarter of it without end. Objects may be left out
-(`Settings::may_skip`), and the budget is the same for all sizes. *Visits* are objects tested one by one plus objects rated. Each size is
-timed in turns with the smallest.
+**Growth.** The scene grows around a camera in its middle that sees a quarter of it without end. Objects may be
+left out (`Settings::may_skip`), and the budget is the same for all sizes. *Visits* are objects tested one by
+one plus objects rated. Each size is timed in turns with the smallest.
 
 ![Visits and time over the number of objects](growth.svg)
 
-**Gaps.** Random instances with a budget from 5 % to 95 % of the way, solved by the frame loop's solver without a λ from before; bound
-and benefit are totals. `small_exact` compares with all undominated sums, `n100_proved` gives the general
-solver 64 passes over its lists. These are counts and repeat exactly.
+**Gaps.** Random instances with a budget from 5 % to 95 % of the way, solved by the frame loop's solver without
+a λ from before; bound and benefit are totals. `small_exact` compares with all undominated sums, `n100_proved`
+gives the general solver 64 passes over its lists. These are counts and repeat exactly.
 ";

@@ -1,9 +1,9 @@
 //! The scene that all rows are measured in, made from a seed.
 //!
 //! Objects are scattered over a square of ground, a hundred square metres to each, so that the density stays when
-//! their number grows. Radii are from 0.25 m to 64 m, small ones more often; one in eight counts twice and one in eight
-//! half. There are 256 tables of two to six levels. The order of objects is that of the dice, which is not that of
-//! space: what an engine's list of entities looks like after a while.
+//! their number grows. Radii are from 0.25 m to 64 m, small ones more often; one in eight counts twice and one in
+//! eight half. There are 256 tables of two to six levels. The order of objects is that of the dice, which is not
+//! that of space: what an engine's list of entities looks like after a while.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;

@@ -16,7 +16,8 @@ pub struct Hull {
 }
 
 impl Hull {
-    /// Monotone chain over levels, which are given finest first and are cheaper and less accurate from one to the next.
+    /// Monotone chain over levels, which are given finest first and are cheaper and less accurate from one to the
+    /// next.
     pub fn of(levels: &[Detail]) -> Self {
         let mut chain: Vec<usize> = Vec::new();
         for next in (0..levels.len()).rev() {
@@ -115,8 +116,8 @@ impl Classes<'_> {
         (0..self.len()).map(|i| u64::from(self.hull(i).units[0])).sum()
     }
 
-    /// The keys of all steps, objects ascending. Without branches: all slots are written, and as many kept as there are
-    /// steps.
+    /// The keys of all steps, objects ascending. Without branches: all slots are written, and as many kept as
+    /// there are steps.
     pub fn keys<'k>(&self, keys: &'k mut Vec<u64>) -> &'k mut [u64] {
         keys.resize((self.len() + 1) * (MOST_STEPS + 1), 0);
         let mut end = 0;

@@ -1,9 +1,10 @@
 //! T. Funkhouser and C. Séquin, "Adaptive Display Algorithm for Interactive Frame Rates During Visualization of
 //! Complex Virtual Environments", 1993: incremental from the last frame's levels, with two heaps.
 //!
-//! Each iteration raises the object whose next finer position has the highest value (benefit ÷ cost of the position
-//! itself, not of the step), then, while over the budget, lowers the one whose own position has the lowest; it ends with
-//! the iteration that lowers what it has raised. It does not claim the textbook's answer, and does not reach it.
+//! Each iteration raises the object whose next finer position has the highest value (benefit ÷ cost of the
+//! position itself, not of the step), then, while over the budget, lowers the one whose own position has the
+//! lowest; it ends with the iteration that lowers what it has raised. It does not claim the textbook's answer,
+//! and does not reach it.
 
 use std::collections::BinaryHeap;
 
@@ -19,7 +20,8 @@ pub struct FunkhouserSequin {
 /// Ordered bits of a value, the object, and the position it is offered at: valid while it is still there.
 type Offer = (u32, u32, u8);
 
-/// Iterations per object after which the rule is stopped: values that do not fall with detail can make it go round in a circle.
+/// Iterations per object after which the rule is stopped: values that do not fall with detail can make it go
+/// round in a circle.
 const MOST_ITERATIONS: usize = 20;
 
 impl Selection for FunkhouserSequin {

@@ -1,6 +1,6 @@
-//! Costs of which the slower of two stages counts, max(geometry, pixels), by a hull per object: a table's hull does not
-//! hold there, so that each object's own is made in every frame. The steps inside the bracket around the last λ are
-//! sorted and taken; where the budget does not end inside it, all are.
+//! Costs of which the slower of two stages counts, max(geometry, pixels), by a hull per object: a table's hull
+//! does not hold there, so that each object's own is made in every frame. The steps inside the bracket around the
+//! last λ are sorted and taken; where the budget does not end inside it, all are.
 
 use super::classes::Totals;
 use crate::scene::{Detail, MOST_STEPS, UNITS_PER_US};

@@ -1,5 +1,5 @@
-//! Weighted quickselect: the step that the budget cuts is looked for as a median is, without sorting; every other step
-//! is then compared with it. O(steps) on average.
+//! Weighted quickselect: the step that the budget cuts is looked for as a median is, without sorting; every other
+//! step is then compared with it. O(steps) on average.
 
 use super::Selection;
 use super::classes::Classes;
@@ -66,8 +66,8 @@ fn pivot(steps: &[Priced]) -> u64 {
     *sample.select_nth_unstable(SAMPLE / 2).1
 }
 
-/// Moves steps up to the pivot to the front of `to` and the others to its back, without branches. Returns how many are
-/// in front and what they cost.
+/// Moves steps up to the pivot to the front of `to` and the others to its back, without branches. Returns how
+/// many are in front and what they cost.
 fn partition(from: &[Priced], to: &mut [Priced], pivot: u64) -> (usize, u64) {
     let (mut front, mut back, mut units) = (0, to.len() - 1, 0);
     for &step in from {

@@ -1,5 +1,5 @@
-//! The frame of someone who knows the machine but not the problem: every object tested in straight loops over blocks of
-//! sixteen, columns in spatial order, and the packed steps sorted.
+//! The frame of someone who knows the machine but not the problem: every object tested in straight loops over
+//! blocks of sixteen, columns in spatial order, and the packed steps sorted.
 
 use super::Selection;
 use super::classes::{Classes, Hull};
