@@ -5,7 +5,7 @@ use super::Selection;
 use super::classes::Classes;
 
 /// Bits per digit: more take fewer passes over the 32 bits of a slope, but write to more pages at a time than the
-/// translation buffer holds: eleven bits were half as fast.
+/// translation buffer holds: eleven bits took half as long again.
 const DIGIT_BITS: u32 = 8;
 const DIGITS: usize = 1 << DIGIT_BITS;
 const PASSES: usize = 4;
