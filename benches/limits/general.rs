@@ -34,7 +34,7 @@ impl<'a> Objects<'a> {
         for i in 0..scene.len() {
             let area_px2 = lens.weight(scene.sphere(i), 1.0);
             weight.push(area_px2 * scene.importance[i]);
-            pixel_ticks.push((f64::from(area_px2) * (PIXEL_US * TICKS_PER_US)) as u64 + 1);
+            pixel_ticks.push((f64::from(area_px2) * (PIXEL_US * TICKS_PER_US)) as u64);
         }
         TwoStages { tables: &scene.tables, table: &scene.table, weight, pixel_ticks }
     }

@@ -15,8 +15,8 @@ pub struct TwoStages<'a> {
     pub pixel_ticks: &'a [u64],
 }
 
-/// Ticks per 1024th of a microsecond: pixels are priced finer than geometry.
-const TICKS_PER_UNIT: u64 = 1 << 10;
+/// Ticks per 1024th of a microsecond. Pixels do not cost whole ones: so fine, a million roundings are no nanosecond.
+const TICKS_PER_UNIT: u64 = 1 << 20;
 pub const TICKS_PER_US: f64 = UNITS_PER_US * TICKS_PER_UNIT as f64;
 
 impl TwoStages<'_> {
