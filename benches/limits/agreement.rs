@@ -24,6 +24,8 @@ pub struct Reference {
     /// The cheapest choice.
     pub least: Totals,
     pub budget: u64,
+    /// What a choice may cost beyond the budget: nothing, where costs are integers on both sides.
+    pub slack: u64,
     pub classes: usize,
 }
 
@@ -31,7 +33,7 @@ impl Reference {
     /// The textbook's answer as a reference.
     pub fn of(classes: &Classes<'_>, textbook: &[u8], budget: u64) -> Self {
         let least = classes.totals(&vec![0; classes.len()]);
-        Self { textbook: classes.totals(textbook), least, budget, classes: classes.len() }
+        Self { textbook: classes.totals(textbook), least, budget, slack: 0, classes: classes.len() }
     }
 
     /// Refuses a choice that is over the budget, worse than the textbook's, or better than a fill can explain.
@@ -39,7 +41,7 @@ impl Reference {
     pub fn check(&self, ours: Totals) -> Result<f64, String> {
         let gain = self.textbook.benefit - self.least.benefit;
         let surplus = (ours.benefit - self.textbook.benefit) / gain;
-        if ours.units > self.budget {
+        if ours.units > self.budget + self.slack {
             return Err(format!("the frame costs {} of {}", ours.units, self.budget));
         }
         if !(-ROUNDING..=FILL / self.classes as f64 + ROUNDING).contains(&surplus) {

@@ -61,8 +61,8 @@ pub struct Lens {
     /// Normals and offsets; inside is not negative.
     pub planes: [[f32; 4]; 6],
     pub eye: [f32; 3],
-    /// Pixels per tangent.
-    pub scale_px: f32,
+    /// Projected area of a sphere of radius 1 at distance 1.
+    pub unit_px2: f32,
     pub viewport_px2: f32,
 }
 
@@ -77,10 +77,10 @@ impl Lens {
     #[inline]
     pub fn weight(&self, [x, y, z, radius]: [f32; 4], importance: f32) -> f32 {
         let [dx, dy, dz] = [x - self.eye[0], y - self.eye[1], z - self.eye[2]];
-        let distance = (dx * dx + dy * dy + dz * dz).sqrt().max(NEAR);
-        let radius_px = radius * self.scale_px / distance;
-        let area_px2 = (std::f32::consts::PI * radius_px * radius_px).min(self.viewport_px2);
-        let area_px2 = if distance <= radius { self.viewport_px2 } else { area_px2 };
+        let distance2 = (dx * dx + dy * dy + dz * dz).max(NEAR * NEAR);
+        let radius2 = radius * radius;
+        let area_px2 = (radius2 * self.unit_px2 / distance2).min(self.viewport_px2);
+        let area_px2 = if distance2 <= radius2 { self.viewport_px2 } else { area_px2 };
         area_px2 * importance
     }
 }

@@ -15,6 +15,9 @@ const ROW: &str = "general_cost_vs_hull";
 /// High enough for pixels to be the slower stage of coarse levels of one object in three or so.
 const PIXEL_US: f64 = 4.0;
 
+/// The share of the budget that a last bit of every projected area, rounded otherwise than here, may come to.
+const SLACK: u64 = 10_000_000;
+
 /// The objects of a scene as a camera sees them, with buffers.
 struct Objects<'a> {
     scene: &'a Scene,
@@ -114,7 +117,7 @@ fn agree(
     let coarsest: Vec<u8> =
         seen.table.iter().map(|&t| (seen.tables[usize::from(t)].len() - 1) as u8).collect();
     let (textbook, least) = (seen.totals(&levels[1]), seen.totals(&coarsest));
-    let reference = Reference { textbook, least, budget, classes: count };
+    let reference = Reference { textbook, least, budget, slack: budget / SLACK, classes: count };
     let ours = frames.levels(store, count);
     if ours.contains(&NOT_SHOWN) {
         return Err("the frame does not show all that is in view".to_owned());

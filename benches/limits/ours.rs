@@ -81,7 +81,7 @@ pub fn lens(camera: &Camera) -> Lens {
     Lens {
         planes: lens.frustum.planes.map(plane),
         eye: lens.eye.to_array(),
-        scale_px: lens.scale_px,
+        unit_px2: std::f32::consts::PI * lens.scale_px * lens.scale_px,
         viewport_px2: lens.viewport_px2,
     }
 }
