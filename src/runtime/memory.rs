@@ -287,7 +287,7 @@ impl GroupMemory {
     ) -> Vec<(ObjectId, Moved)> {
         let mut moved = Vec::new();
         let changed =
-            |block: u32| objects.block_revisions().get(block as usize).is_none_or(|&r| r > revision);
+            |block: u32| objects.block_layout_revisions().get(block as usize).is_none_or(|&r| r > revision);
         for at in (0..self.rows.len()).filter(|&at| changed(self.rows[at].block)) {
             let row = self.rows[at];
             for slot in slots_of(row.block, row.mask) {
@@ -412,7 +412,7 @@ impl Layout {
         }
         self.tenants.resize(objects.blocks().len() * BLOCK, None);
         for (block, tenants) in self.tenants.chunks_exact_mut(BLOCK).enumerate() {
-            if before.is_none() || objects.block_revisions()[block] > since {
+            if before.is_none() || objects.block_layout_revisions()[block] > since {
                 let slots = block * BLOCK..;
                 tenants.iter_mut().zip(slots).for_each(|(tenant, slot)| *tenant = objects.id_of(slot));
             }
