@@ -325,6 +325,8 @@ impl Replay {
 
     /// What was wanted before is remembered of exactly what was in view before.
     fn memory(&mut self, frame: &Frame<'_>) -> Result<(), Violation> {
+        // What has been removed is forgotten, though its id may come back.
+        self.seen.values_mut().for_each(|seen| seen.retain(|&id| frame.objects.slot_of(id).is_some()));
         for (group, range) in frame.candidates.groups() {
             let now: BTreeSet<ObjectId> = range.clone().map(|i| who(frame, i).1).collect();
             let before = self.seen.insert(group.group, now).unwrap_or_default();
