@@ -406,6 +406,10 @@ pub struct FrameReport {
     pub tested_objects: usize,
     /// Objects in view, summed over groups.
     pub candidates: usize,
+    /// Objects that may be left out and are worth less than this, in px² per µs, were not looked at.
+    pub floor: f64,
+    /// How many those were, some of them out of view.
+    pub worth_too_little: usize,
     /// Objects that changed the level that is wanted for them, those that came into view not counted.
     pub switches: usize,
     /// Fades in flight.

@@ -92,7 +92,8 @@ struct Record {
 impl Record {
     fn of(runtime: &Runtime, objects: &Objects) -> Self {
         // How much culling looks at depends on the slots.
-        let report = FrameReport { visited_nodes: 0, tested_objects: 0, ..*runtime.report() };
+        let report =
+            FrameReport { visited_nodes: 0, tested_objects: 0, worth_too_little: 0, ..*runtime.report() };
         let groups = (0..4).map(GroupId);
         let mut shown: Vec<_> = groups
             .flat_map(|group| runtime.shown_slots(group).map(move |(slot, shown)| (group, slot, shown)))

@@ -533,6 +533,7 @@ fn counterexample(select: &mut dyn Selector) -> SelectReport {
         model: &model,
         budget,
         timing,
+        floor: 0.0,
     };
     let mut levels = [Level::NOT_DRAWN; 2];
     select.select(&frame, &mut levels)

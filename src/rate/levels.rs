@@ -24,6 +24,7 @@ pub struct LevelRate {
 pub struct TableRates {
     spans: Vec<Span>,
     levels: Vec<LevelRate>,
+    best_slopes: Vec<f32>,
     revision: u64,
 }
 
@@ -40,12 +41,14 @@ impl TableRates {
     pub fn renew(&mut self, tables: &[LodTable], model: &CostModel) {
         self.spans.clear();
         self.levels.clear();
+        self.best_slopes.clear();
         for table in tables {
             let (start, radius) = (self.levels.len(), table.bounds().radius);
             self.levels.extend(table.levels().iter().map(|level| rate_of(level, radius, model)));
             let levels = self.levels[start..].iter().enumerate().map(|(i, &rate)| (Level(i as u8), rate));
             let cheapest = cheapest(levels).unwrap_or(Level::FINEST);
             self.spans.push(Span { start: start as u32, coarsest: table.coarsest(), cheapest });
+            self.best_slopes.push(best_slope(&self.levels[start..]));
         }
         self.revision += 1;
     }
@@ -69,6 +72,11 @@ impl TableRates {
     /// The place of a drawn level among the levels of all tables, table by table.
     pub fn index(&self, table: u16, level: Level) -> usize {
         self.spans[usize::from(table)].start as usize + level.index()
+    }
+
+    /// Per table, the greatest accuracy per µs of geometry of any level, rounded up.
+    pub fn best_slopes(&self) -> &[f32] {
+        &self.best_slopes
     }
 
     /// How many levels all tables have.
@@ -132,6 +140,12 @@ fn cheapest(levels: impl Iterator<Item = (Level, LevelRate)>) -> Option<Level> {
         if wins { (level, l) } else { (best, b) }
     };
     levels.reduce(cheaper).map(|(level, _)| level)
+}
+
+fn best_slope(levels: &[LevelRate]) -> f32 {
+    let slope = |level: &LevelRate| f64::from(level.accuracy) / level.geometry_us;
+    let slopes = levels.iter().filter(|level| level.accuracy > 0.0).map(slope);
+    (slopes.fold(0.0, f64::max) as f32).next_up()
 }
 
 fn rate_of(level: &LevelRecord, radius: f32, model: &CostModel) -> LevelRate {

@@ -13,7 +13,7 @@ pub use visibility::Visibility;
 
 use std::ops::Range;
 
-use crate::cull::{BlockTree, CullOptions, CullReport};
+use crate::cull::{BlockTree, CullOptions, CullReport, ValueFloor};
 use crate::feedback::{Feedback, FeedbackOptions, Prediction};
 use crate::frame::OptionsError;
 use crate::frame::{Candidates, Change, FrameId, FrameReport, FrameTime, GroupEnd, GroupId, NO_PLACE};
@@ -241,7 +241,8 @@ impl Runtime {
     fn begin(&mut self, objects: &mut Objects, input: &FrameInput<'_>) {
         let frame = FrameId(self.report.frame.0 + 1);
         let broken_bounds = objects.broken_bounds();
-        self.report = FrameReport { frame, broken_bounds, ..FrameReport::default() };
+        let floor = self.selector.floor();
+        self.report = FrameReport { frame, broken_bounds, floor, ..FrameReport::default() };
         self.changes.clear();
         self.clock_ms += elapsed_ms(input.dt_s);
         self.feedback.measure(input.measured);
@@ -250,6 +251,7 @@ impl Runtime {
         let rated = Rated { tables: objects.tables().len(), model_revision: self.feedback.model_revision() };
         if self.rated != Some(rated) {
             self.rates.renew(objects.tables(), self.feedback.model());
+            self.tree.expect_slopes(self.rates.best_slopes());
             self.rated = Some(rated);
         }
     }
@@ -295,6 +297,9 @@ impl Runtime {
 
     /// Culls the views of one group, given by their places in [`Scratch::order`].
     fn cull_group(&mut self, objects: &Objects, views: &[ViewInput<'_>], members: Range<usize>) {
+        // Where several views see the same objects, one of them cannot tell what an object is worth.
+        let lambda = if members.len() == 1 { self.report.floor } else { 0.0 };
+        let floor = ValueFloor { lambda, best_slope: self.rates.best_slopes() };
         for (at, member) in members.enumerate() {
             let input = &views[self.scratch.order[member]];
             let lens = input.view.lens(objects.origin());
@@ -303,7 +308,8 @@ impl Runtime {
                 None => self.scratch.seen.push(Seen { lens, visible: Vec::new() }),
             }
             let seen = &mut self.scratch.seen[at];
-            let culled = visibility::find(&self.tree, objects, &self.options.cull, input.visibility, seen);
+            let culled =
+                visibility::find(&self.tree, objects, &self.options.cull, &floor, input.visibility, seen);
             count_culled(&mut self.report, &culled);
         }
     }
@@ -540,6 +546,7 @@ fn frame_of<'a>(
         model: feedback.model(),
         budget: report.budget,
         timing: feedback.timing(),
+        floor: report.floor,
     }
 }
 
@@ -555,4 +562,5 @@ fn elapsed_ms(dt_s: f32) -> f64 {
 fn count_culled(report: &mut FrameReport, culled: &CullReport) {
     report.visited_nodes += culled.nodes_visited as usize;
     report.tested_objects += culled.objects_tested as usize;
+    report.worth_too_little += culled.worth_too_little as usize;
 }

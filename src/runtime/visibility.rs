@@ -1,6 +1,6 @@
 //! Whose word counts for what is visible: the runtime's culling, the caller's, or both.
 
-use crate::cull::{BlockTree, CullOptions, CullReport, VisibleBlock};
+use crate::cull::{BlockTree, CullOptions, CullReport, ValueFloor, VisibleBlock};
 use crate::rate::Seen;
 use crate::scene::{BLOCK, ObjectId, Objects};
 
@@ -22,14 +22,15 @@ pub(super) fn find(
     tree: &BlockTree,
     objects: &Objects,
     options: &CullOptions,
+    floor: &ValueFloor<'_>,
     visibility: Visibility<'_>,
     seen: &mut Seen,
 ) -> CullReport {
     seen.visible.clear();
     match visibility {
-        Visibility::Computed => tree.cull(objects, &seen.lens, options, &mut seen.visible),
+        Visibility::Computed => tree.cull_above(objects, &seen.lens, options, floor, &mut seen.visible),
         Visibility::Without(hidden) => {
-            let report = tree.cull(objects, &seen.lens, options, &mut seen.visible);
+            let report = tree.cull_above(objects, &seen.lens, options, floor, &mut seen.visible);
             hidden
                 .iter()
                 .filter_map(|&id| objects.slot_of(id))

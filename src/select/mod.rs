@@ -38,6 +38,9 @@ pub struct Frame<'a> {
     pub budget: Budget,
     /// What frames have been measured to take.
     pub timing: Timing,
+    /// Objects that may be left out and are worth less than this, in px² per µs, are no candidates: see
+    /// [`Selector::floor`]. 0 where everything in view is one.
+    pub floor: f64,
 }
 
 impl Frame<'_> {
@@ -131,6 +134,12 @@ pub trait Selector: Send {
     /// Chooses. `levels` has one entry per candidate: what was wanted in the last frame, and anything for a candidate
     /// that has just come into view.
     fn select(&mut self, frame: &Frame<'_>, levels: &mut [Level]) -> SelectReport;
+
+    /// What the next frame's objects have to be worth at most, in px² per µs, to be left out for certain where they may
+    /// be; 0 for a policy that cannot tell. They are not even looked at then, whole regions of them at a time.
+    fn floor(&self) -> f64 {
+        0.0
+    }
 
     /// Why candidate `i` is at `level`, which it could be finer than: the budget (or the size) unless the policy knows
     /// of another reason. `frame` is the frame that was selected last.

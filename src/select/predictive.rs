@@ -129,7 +129,7 @@ impl Predictive {
         outcome
     }
 
-    fn report(&self, outcome: &Outcome, fixed: u64, over: u64) -> SelectReport {
+    fn report(&self, frame: &Frame<'_>, outcome: &Outcome, fixed: u64, over: u64) -> SelectReport {
         let us_per_tick = 1.0 / self.hulls.ticks_per_us;
         let certificate = Certificate {
             upper_bound: outcome.upper_bound,
@@ -141,12 +141,17 @@ impl Predictive {
         SelectReport {
             cost_us: outcome.cost.saturating_add(fixed) as f64 * us_per_tick,
             benefit: outcome.benefit,
-            certificate: (shortfall == 0).then_some(certificate),
+            // Below the floor what was not looked at might have been worth drawing.
+            certificate: (shortfall == 0 && self.lambda >= frame.floor).then_some(certificate),
             infeasible_us: shortfall as f64 * us_per_tick,
             steps: outcome.steps,
         }
     }
 }
+
+/// How far λ may fall from one frame to the next before objects that would be drawn are left out for a frame. Higher
+/// leaves out more, and has no certificate more often.
+const FALL: f64 = 0.5;
 
 impl Selector for Predictive {
     fn needs(&self) -> Needs {
@@ -163,7 +168,12 @@ impl Selector for Predictive {
         let outcome = self.solve(frame, free(budget), free(ease), levels);
         self.knapsack.profiles.truncate(self.hulls.shared_count as usize);
         self.lambda = outcome.lambda * self.hulls.ticks_per_us;
-        self.report(&outcome, fixed, over)
+        self.report(frame, &outcome, fixed, over)
+    }
+
+    /// λ of the last frame, less the greatest premium of what is held, and less room for λ to fall.
+    fn floor(&self) -> f64 {
+        FALL * self.lambda / (1.0 + f64::from(self.options.dwell))
     }
 
     /// Held back by the price of switching where the next finer level is worth the going rate without it.
@@ -185,6 +195,7 @@ impl Selector for Predictive {
 
     fn reset(&mut self) {
         self.knapsack.forget();
+        self.lambda = 0.0;
     }
 
     fn boxed_clone(&self) -> Box<dyn Selector> {

@@ -245,6 +245,7 @@ impl<'a> Judge<'a> {
             model: self.machine.model(),
             candidates: &self.seen,
             budget: outward(spent_us, self.shown.len()),
+            floor: 0.0,
             ..runtime.last_frame(objects)
         };
         let benefit = frame.report(&self.shown).benefit;
