@@ -61,6 +61,8 @@ pub struct Predictive {
     odd: Vec<OddClass>,
     /// λ of the last frame in px² per µs.
     lambda: f64,
+    /// See [`FALL`].
+    fall: f64,
 }
 
 /// Marks a class whose hull is yet to be made.
@@ -149,9 +151,13 @@ impl Predictive {
     }
 }
 
-/// How far λ may fall from one frame to the next before objects that would be drawn are left out for a frame. Higher
-/// leaves out more, and has no certificate more often.
-const FALL: f64 = 0.5;
+/// How far λ is expected to fall from one frame to the next at most, as a factor: so little where it has not fallen
+/// farther for a while, and so much after it has. What is worth less than that is not looked at; where λ falls farther
+/// after all there is no certificate, and what would be drawn is missing for a frame.
+const FALL: std::ops::RangeInclusive<f64> = 0.6..=0.95;
+
+/// How fast trust comes back, per frame.
+const TRUST: f64 = 1.1;
 
 impl Selector for Predictive {
     fn needs(&self) -> Needs {
@@ -168,12 +174,14 @@ impl Selector for Predictive {
         let outcome = self.solve(frame, free(budget), free(ease), levels);
         self.knapsack.profiles.truncate(self.hulls.shared_count as usize);
         self.lambda = outcome.lambda * self.hulls.ticks_per_us;
+        let fell = self.lambda < frame.floor;
+        self.fall = if fell { *FALL.start() } else { (self.fall * TRUST).clamp(*FALL.start(), *FALL.end()) };
         self.report(frame, &outcome, fixed, over)
     }
 
-    /// λ of the last frame, less the greatest premium of what is held, and less room for λ to fall.
+    /// λ of the last frame, less the premium of what is held, and less room for λ to fall.
     fn floor(&self) -> f64 {
-        FALL * self.lambda / (1.0 + f64::from(self.options.dwell))
+        self.fall * self.lambda / (1.0 + f64::from(self.options.hysteresis))
     }
 
     /// Held back by the price of switching where the next finer level is worth the going rate without it.
@@ -195,7 +203,7 @@ impl Selector for Predictive {
 
     fn reset(&mut self) {
         self.knapsack.forget();
-        self.lambda = 0.0;
+        (self.lambda, self.fall) = (0.0, 0.0);
     }
 
     fn boxed_clone(&self) -> Box<dyn Selector> {
