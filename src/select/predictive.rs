@@ -4,7 +4,7 @@ use super::{Frame, Needs, Selector};
 use crate::frame::{Candidate, Candidates, Cause, Certificate, OptionsError, PixelSum, SelectReport};
 use crate::knapsack::{Crowd, OddClass, Outcome, ProfileItem, SharedClass, SharedKnapsack};
 use crate::rate::{Stages, TableRates, cost_us};
-use crate::scene::LevelRange;
+use crate::scene::{BLOCK, LevelRange};
 use crate::table::Level;
 
 /// Options of [`Predictive`].
@@ -68,6 +68,18 @@ pub struct Predictive {
 /// Marks a class whose hull is yet to be made.
 const OWN: u32 = u32::MAX;
 
+/// The class of a candidate that has just come into view and asks for nothing special, where that can be told without
+/// its details.
+fn plain_newcomer(frame: &Frame<'_>, i: usize) -> Option<SharedClass> {
+    let candidates = frame.candidates;
+    let (block, lane) = (candidates.slot[i] as usize / BLOCK, candidates.slot[i] as usize % BLOCK);
+    let block = &frame.objects.blocks()[block];
+    let plain =
+        !candidates.is_detailed() && candidates.previous[i].is_none() && block.special & (1 << lane) == 0;
+    let (profile, weight) = (u32::from(block.table[lane]), candidates.weight[i]);
+    plain.then_some(SharedClass { profile, weight, scale: 1.0, stay: 0.0, current: 0 })
+}
+
 /// Whether what a level costs depends on the candidate in more than a factor: where the cost of pixels depends on the
 /// level, the table's hull does not hold.
 fn has_own_hull(frame: &Frame<'_>, candidate: &Candidate) -> bool {
@@ -92,20 +104,27 @@ impl Predictive {
         let mut pixels = candidates.pixels;
         self.odd.clear();
         for i in candidates.unplaced() {
-            let candidate = frame.candidate(i);
-            let own = has_own_hull(frame, &candidate);
-            if own {
-                pixels.add(-PixelSum::rounded(candidate.area_px2));
-            }
-            let profile =
-                if own { OWN } else { self.hulls.shared(&candidate, frame.rates, &mut self.knapsack) };
-            let scale = if own { 1.0 } else { candidate.cost_scale };
-            let stay = self.options.price(candidates.previous[i], candidates.age_ms[i]);
-            let class = SharedClass { profile, weight: candidate.weight, scale, stay, current: 0 };
+            let class = match plain_newcomer(frame, i) {
+                Some(class) => class,
+                None => self.odd_class(frame, i, &mut pixels),
+            };
             self.odd.push(OddClass { at: i as u32, class });
         }
         self.make_own_hulls(frame);
         ceil_ticks(frame.model.pixel_us * self.hulls.ticks_per_us * pixels.px2())
+    }
+
+    /// A class by all that its candidate asks. Its own hull is yet to be made, and what it holds to be found.
+    fn odd_class(&mut self, frame: &Frame<'_>, i: usize, pixels: &mut PixelSum) -> SharedClass {
+        let candidate = frame.candidate(i);
+        let own = has_own_hull(frame, &candidate);
+        if own {
+            pixels.add(-PixelSum::rounded(candidate.area_px2));
+        }
+        let profile = if own { OWN } else { self.hulls.shared(&candidate, frame.rates, &mut self.knapsack) };
+        let scale = if own { 1.0 } else { candidate.cost_scale };
+        let stay = self.options.price(frame.candidates.previous[i], frame.candidates.age_ms[i]);
+        SharedClass { profile, weight: candidate.weight, scale, stay, current: 0 }
     }
 
     /// Makes the hulls that are not shared, after all that are, and finds what is held.
@@ -115,8 +134,9 @@ impl Predictive {
             if class.profile == OWN {
                 class.profile = self.hulls.own(frame, &frame.candidate(i), &mut self.knapsack);
             }
-            let held = |level: Level| self.knapsack.profiles.position_of(class.profile, level.0);
-            class.current = frame.candidates.previous[i].map_or(0, held);
+            if let Some(level) = frame.candidates.previous[i] {
+                class.current = self.knapsack.profiles.position_of(class.profile, level.0);
+            }
         }
     }
 

@@ -39,11 +39,20 @@ impl<F: Fn(usize) -> f32> Crowd<'_, F> {
         (self.place[i] as usize) < self.census.len()
     }
 
-    fn class(&self, profiles: &Profiles, i: usize) -> SharedClass {
-        if self.holds_item(i) {
-            return profiles.class_at(self.place[i], self.weight[i], (self.stay)(i));
+    /// A class that holds an item.
+    fn holder(&self, profiles: &Profiles, i: usize) -> SharedClass {
+        profiles.class_at(self.place[i], self.weight[i], (self.stay)(i))
+    }
+
+    /// A reader of classes, to be asked for ascending ones.
+    fn reader<'a>(&'a self, profiles: &'a Profiles) -> impl FnMut(usize) -> SharedClass + 'a {
+        let mut odd = self.odd.iter();
+        move |i| match self.holds_item(i) {
+            true => self.holder(profiles, i),
+            false => {
+                odd.by_ref().find(|odd| odd.at as usize == i).map_or(SharedClass::NOTHING, |odd| odd.class)
+            }
         }
-        self.odd[self.odd.partition_point(|odd| (odd.at as usize) < i)].class
     }
 }
 
@@ -244,7 +253,7 @@ impl SharedKnapsack {
         let Self { profiles, classes, owners, aside, .. } = self;
         aside.clear();
         classes.clear();
-        classes.extend((0..crowd.weight.len()).map(|i| crowd.class(profiles, i)));
+        classes.extend((0..crowd.weight.len()).map(crowd.reader(profiles)));
         owners.clear();
         owners.extend(0..crowd.weight.len() as u32);
     }
@@ -282,7 +291,7 @@ impl SharedKnapsack {
         let every = (crowd.weight.len() / SAMPLE).max(1);
         let Self { profiles, classes, .. } = self;
         classes.clear();
-        classes.extend((0..crowd.weight.len()).step_by(every).map(|i| crowd.class(profiles, i)));
+        classes.extend((0..crowd.weight.len()).step_by(every).map(crowd.reader(profiles)));
         let share = classes.len() as f64 / crowd.weight.len() as f64;
         let [low, high] = self.cold_bracket((target as f64 * share) as u64, None);
         [(low * 0.98).max(f32::MIN_POSITIVE), high * 1.02]
@@ -303,8 +312,9 @@ impl SharedKnapsack {
             aside.cost += profiles.item_ticks(item)[1] * u64::from(count);
         }
         aside.benefit = sift(crowd.weight, crowd.place, profiles.holds(), bracket, |i| opened.push(i as u32));
+        let mut read = crowd.reader(profiles);
         for &i in opened.iter() {
-            let shared = crowd.class(profiles, i as usize);
+            let shared = read(i as usize);
             let class = Class::new(profiles, &shared);
             let above = class.reach(class.held(), high);
             let holds_item = crowd.holds_item(i as usize);
@@ -312,7 +322,7 @@ impl SharedKnapsack {
                 aside.classes -= 1;
                 aside.cost -= class.cost(class.held());
             }
-            if !holds_item || class.reach(above, low) != above {
+            if class.reach(above, low) != above {
                 classes.push(shared);
                 owners.push(i);
                 aside.mark(i as usize);
@@ -321,7 +331,8 @@ impl SharedKnapsack {
             aside.add(&class, above);
             let decided = Decided { at: i, class: shared, position: above, listed: false };
             // A held item that is no corner of its hull is not held on.
-            if class.positions[usize::from(above)].item != profiles.code(crowd.place[i as usize]) {
+            let item = class.positions[usize::from(above)].item;
+            if !holds_item || item != profiles.code(crowd.place[i as usize]) {
                 aside.mark(i as usize);
                 aside.moved.push(decided);
             }
@@ -329,6 +340,7 @@ impl SharedKnapsack {
                 aside.hovering.push(decided);
             }
         }
+        drop(read);
         self.survey(bracket, None)
     }
 
@@ -378,7 +390,7 @@ impl SharedKnapsack {
         };
         found.extend((0..crowd.weight.len()).filter(goes_on).map(|i| i as u32));
         for &i in &found {
-            let shared = crowd.class(&self.profiles, i as usize);
+            let shared = crowd.holder(&self.profiles, i as usize);
             let class = Class::new(&self.profiles, &shared);
             if is_opening(&class, class.held()) {
                 self.aside.remove(&class, class.held());

@@ -43,6 +43,11 @@ pub struct SharedClass {
     pub current: u8,
 }
 
+impl SharedClass {
+    /// A class of no weight.
+    const NOTHING: Self = Self { profile: 0, weight: 0.0, scale: 1.0, stay: 0.0, current: 0 };
+}
+
 /// Solver with its scratch and the memory of the last λ. Fill `profiles` and `classes`, call
 /// [`SharedKnapsack::solve`], read `chosen`.
 #[derive(Clone, Debug, Default)]
