@@ -41,7 +41,7 @@ pub struct Candidate {
 ///
 /// The columns from `table` to `area_px2` are *details*. Where a policy can do without them
 /// ([`Selector::needs`](crate::select::Selector::needs)) they are left empty, and
-/// [`Frame::candidate`](crate::select::Frame::candidate) works out those of a single candidate.
+/// [`Frame::candidate`](crate::select::Frame::candidate) works out those of a single candidate. `size_px` may be filled alone.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
     /// See [`Candidate::slot`].
@@ -188,6 +188,15 @@ impl Candidates {
                 self.slot.push(slot + lane as u32);
                 self.weight.push(weight[lane]);
             }
+        }
+    }
+
+    /// Adds the sizes in the lanes of `mask` of the block that was pushed last.
+    pub fn push_sizes(&mut self, mask: u16, size_px: &[f32; BLOCK]) {
+        if mask == u16::MAX {
+            self.size_px.extend_from_slice(size_px);
+        } else {
+            self.size_px.extend(lanes(mask).map(|lane| size_px[lane]));
         }
     }
 

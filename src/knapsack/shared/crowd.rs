@@ -302,7 +302,9 @@ impl SharedKnapsack {
             aside.classes += u64::from(count);
             aside.cost += profiles.item_ticks(item)[1] * u64::from(count);
         }
-        aside.benefit = sift(crowd.weight, crowd.place, profiles.holds(), bracket, |i| opened.push(i as u32));
+        let holds = profiles.holds();
+        let open = |i: usize| opened.push(i as u32);
+        aside.benefit = sift(crowd.weight, crowd.weight, crowd.place, holds, bracket, open);
         for &i in opened.iter() {
             let shared = crowd.class(profiles, i as usize);
             let class = Class::new(profiles, &shared);
