@@ -1,5 +1,7 @@
 //! The rule of the policies that go by size, object by object, as a check inside a policy that is running.
 
+use std::cmp::Ordering;
+
 use lod_budget::check::{self, Promise};
 use lod_budget::frame::{Candidates, SelectReport};
 use lod_budget::select::{
@@ -48,12 +50,13 @@ impl BySize for Reactive {
         let is_news =
             frame.timing.fresh > 0 && frame.timing.filtered_us > 0.0 && frame.budget.target_us > 0.0;
         let is_off = is_news && error.abs() > 2.0 * f64::from(dead_band);
-        let rises = is_off && error > 0.0 && !finest && before < range.1;
-        let falls = is_off && error < 0.0 && !coarsest && before > range.0;
-        let step = self.factor().total_cmp(&before) as i32;
-        assert!(if rises { step > 0 } else { is_off || step <= 0 }, "{before} to {}", self.factor());
-        assert!(!falls || step < 0, "{before} to {}", self.factor());
-        assert!(!(is_off && !rises && !falls) || step == 0, "{before} to {} though held", self.factor());
+        let held = if error > 0.0 { finest || before >= range.1 } else { coarsest || before <= range.0 };
+        let step = self.factor().total_cmp(&before);
+        let expected = match held {
+            true => Ordering::Equal,
+            false => error.total_cmp(&0.0),
+        };
+        assert!(!is_off || step == expected, "{before} to {} by an error of {error}", self.factor());
     }
 }
 
