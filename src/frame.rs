@@ -40,8 +40,8 @@ pub struct Candidate {
 /// The candidates of a frame, column by column: groups in the order of their ids, slots ascending within a group.
 ///
 /// The columns from `table` to `area_px2` are *details*. Where a policy can do without them
-/// ([`Selector::needs`](crate::select::Selector::needs)) they are left empty, and
-/// [`Frame::candidate`](crate::select::Frame::candidate) works out those of a single candidate. `size_px` may be filled alone.
+/// ([`Selector::needs`](crate::select::Selector::needs)) they are left empty, all or all but `size_px`, and
+/// [`Frame::candidate`](crate::select::Frame::candidate) works out those of a single candidate.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
     /// See [`Candidate::slot`].

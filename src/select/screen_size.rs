@@ -80,7 +80,7 @@ impl ScreenSizeOptions {
             sweep.set_holds(frame.rates, |table, intervals| {
                 self.intervals(frame.rates.levels(table), scale, height_px, intervals);
             });
-            sweep.choose(frame, range, &frame.candidates.size_px, levels, |i, candidate| {
+            sweep.choose(frame, range, levels, |i, candidate| {
                 let level = self.level(frame, i, candidate, scale, height_px);
                 chosen(candidate, level);
                 level
@@ -122,20 +122,11 @@ impl ScreenSizeOptions {
 
     /// The sizes at which [`ScreenSizeOptions::level`] stays at each of `levels`, finest first, when all of them are
     /// allowed: on the safe side, which leaves out some at the ends.
-    pub(super) fn intervals(
-        &self,
-        levels: &[LevelRate],
-        scale: f32,
-        height_px: f32,
-        intervals: &mut Vec<Interval>,
-    ) {
+    fn intervals(&self, levels: &[LevelRate], scale: f32, height_px: f32, intervals: &mut Vec<Interval>) {
         let [up, down] = self.scales(scale);
         let ordinary = [up, down, self.measure.error_px()].iter().all(|x| ORDINARY.contains(x));
-        let first = intervals.len();
-        intervals.resize(
-            first + levels.len(),
-            if ordinary { [*ORDINARY.start(), *ORDINARY.end()] } else { NEVER },
-        );
+        let (first, end) = (intervals.len(), intervals.len() + levels.len());
+        intervals.resize(end, if ordinary { [*ORDINARY.start(), *ORDINARY.end()] } else { NEVER });
         if ordinary {
             self.each_edge(levels, height_px, |level, edge| {
                 let [finer, coarser] = [first + level - 1, first + level];

@@ -1,21 +1,20 @@
 //! One pass over the columns for the policies that decide about each object by itself.
 //!
-//! What such a policy wants of a plain object is the level that it holds while a number of the object, its size, lies in an
-//! interval that the level has. Who stays is told without branches, and counted by level; only the others are decided
-//! one by one. The sums are those of [`Frame::report`], in another order.
+//! A plain object stays at its level while its size lies in the interval of that level. Who stays is told without branches
+//! and counted by level; only the others are decided one by one. The sums are those of [`Frame::report`], of counts.
 
 use std::ops::Range;
 
 use super::Frame;
-use crate::frame::{Candidate, PixelSum, SelectReport};
-use crate::knapsack::{FixedSum, Hold, sift};
+use crate::frame::{Candidate, Candidates, PixelSum, SelectReport};
+use crate::knapsack::{FixedSum, Hold, Units, sift};
 use crate::rate::{LevelRate, TableRates, cost_us};
 use crate::table::Level;
 
-/// Numbers from the first up to the second (exclusive), for which an object holds its level.
+/// Sizes from the first up to the second (exclusive) at which an object stays at a level.
 pub(super) type Interval = [f32; 2];
 
-/// Is decided one by one.
+/// Nobody stays: they are decided one by one.
 pub(super) const NEVER: Interval = [f32::INFINITY, 0.0];
 
 /// The pass, and what the levels chosen in it come to.
@@ -60,22 +59,16 @@ impl Sweep {
         self.holds.push(Hold::OPEN);
     }
 
-    /// Decides about the candidates of `range`, whose numbers are in `numbers`: `rule` does so for one. `levels`, of all
-    /// candidates, has what they hold.
+    /// Chooses the levels of the candidates of `range`, by `rule` for those that may not stay. `levels` is of all candidates
+    /// and has what they hold.
     pub fn choose(
         &mut self,
         frame: &Frame<'_>,
         range: Range<usize>,
-        numbers: &[f32],
         levels: &mut [Level],
         mut rule: impl FnMut(usize, &Candidate) -> Level,
     ) {
-        let (weight, place) =
-            (&frame.candidates.weight[range.clone()], &frame.candidates.place[range.clone()]);
-        let Self { holds, opened, .. } = self;
-        opened.clear();
-        let mut worth =
-            sift(&numbers[range.clone()], weight, place, holds, [1.0; 2], |at| opened.push(at as u32));
+        let mut worth = self.find_open(frame.candidates, range.clone());
         for at in 0..self.opened.len() {
             let i = range.start + self.opened[at] as usize;
             let candidate = frame.candidate(i);
@@ -84,6 +77,15 @@ impl Sweep {
             self.count(frame, i, &candidate, levels[i]);
         }
         self.benefit += worth.benefit();
+    }
+
+    /// Lists who may not stay, counted from the start of `range`, and returns the benefit of the others.
+    fn find_open(&mut self, candidates: &Candidates, range: Range<usize>) -> Units {
+        let Candidates { size_px, weight, place, .. } = candidates;
+        let [size_px, weight] = [size_px, weight].map(|column| &column[range.clone()]);
+        let Self { holds, opened, .. } = self;
+        opened.clear();
+        sift(size_px, weight, &place[range], holds, [1.0; 2], |at| opened.push(at as u32))
     }
 
     /// Counts a candidate at the level that has been chosen for it one by one.
@@ -95,7 +97,7 @@ impl Sweep {
         self.census[frame.rates.index(candidate.table, level)] += 1;
     }
 
-    /// Whether `all` of the levels that candidates with a place are at, given with their tables, are such.
+    /// Whether each level, given with its table, at which there is a candidate with a place is such a one.
     pub fn every(&self, rates: &TableRates, mut such: impl FnMut(u16, Level) -> bool) -> bool {
         let mut counts = self.census.iter();
         all_levels(rates).all(|(table, level)| counts.next() == Some(&0) || such(table, level))
