@@ -40,7 +40,7 @@ pub struct Candidate {
 /// The candidates of a frame, column by column: groups in the order of their ids, slots ascending within a group.
 ///
 /// The columns from `table` to `area_px2` are *details*. Where a policy can do without them
-/// ([`Selector::needs`](crate::select::Selector::needs)) they are left empty, and
+/// ([`Selector::needs`](crate::select::Selector::needs)) they are left empty, all or all but `size_px`, and
 /// [`Frame::candidate`](crate::select::Frame::candidate) works out those of a single candidate.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
@@ -188,6 +188,15 @@ impl Candidates {
                 self.slot.push(slot + lane as u32);
                 self.weight.push(weight[lane]);
             }
+        }
+    }
+
+    /// Adds the sizes in the lanes of `mask` of the block that was pushed last.
+    pub fn push_sizes(&mut self, mask: u16, size_px: &[f32; BLOCK]) {
+        if mask == u16::MAX {
+            self.size_px.extend_from_slice(size_px);
+        } else {
+            self.size_px.extend(lanes(mask).map(|lane| size_px[lane]));
         }
     }
 

@@ -1,12 +1,15 @@
 //! The contract of selection, held against every policy over random scenes, cameras, budgets and options.
 
+mod plain;
 mod scenes;
 
 use lod_budget::check::{self, Promise, Replay};
 use lod_budget::frame::{Change, FrameReport, GroupId};
 use lod_budget::runtime::{FrameInput, Runtime, RuntimeOptions};
 use lod_budget::scene::{ObjectId, Objects};
+use lod_budget::select::{Reactive, ReactiveOptions, ScreenSize, Selector};
 use lod_budget::transition::Shown;
+use plain::{Checked, size_options};
 use proptest::prelude::*;
 use scenes::{
     BudgetOf, Cameras, POLICIES, Policy, Scene, budget, film, inputs, measured, options, reorder, shuffled,
@@ -187,6 +190,20 @@ proptest! {
                 }
                 Ok(())
             })?;
+        }
+    }
+
+    #[test]
+    fn policies_by_size_decide_as_object_by_object(trial in trial(), size in size_options()) {
+        let fixed = ScreenSize::new(size).expect("good options");
+        let steered = Reactive::new(ReactiveOptions { size, ..Default::default() }).expect("good options");
+        let checked: [Box<dyn Selector>; 2] =
+            [Box::new(Checked::new(fixed, size)), Box::new(Checked::new(steered, size))];
+        let budget_us = trial.budget.us(trial.minimum_us());
+        for selector in checked {
+            let mut runtime = Runtime::new(trial.options, selector).expect("good options");
+            let film = [&trial.film[..], &trial.film[..]].concat();
+            trial.run(&mut runtime, &mut trial.scene.store(), budget_us, &film, |_, _, _| Ok(()))?;
         }
     }
 

@@ -18,6 +18,8 @@ mod exactness;
 mod frames;
 mod general;
 mod growth;
+#[path = "../knapsack_exactness/mod.rs"]
+mod knapsack_exactness;
 mod machine;
 mod more;
 mod ours;

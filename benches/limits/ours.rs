@@ -4,7 +4,7 @@ use glam::{DVec3, Quat, Vec2, Vec3};
 use lod_budget::cull::{BlockTree, CullOptions, VisibleBlock};
 use lod_budget::feedback::FeedbackOptions;
 use lod_budget::frame::FrameReport;
-use lod_budget::knapsack::{Instance, Item, ProfileItem, SharedClass, SharedKnapsack, exact};
+use lod_budget::knapsack::{ProfileItem, SharedClass, SharedKnapsack};
 use lod_budget::rate::Stages;
 use lod_budget::scene::TableId;
 use lod_budget::select::{Frame, PredictiveOptions, ScreenSizeOptions};
@@ -268,24 +268,4 @@ impl FrameSolver {
         let outcome = knapsack.solve(problem.budget, problem.budget, |i| i as u128);
         Answer { bound: outcome.upper_bound, choice: knapsack.chosen.clone() }
     }
-}
-
-/// The general solver asks whether to stop after each pass over a list of partial choices. So many passes it is
-/// given; half of all instances of 100 classes need up to 20, and the hardest of a thousand 200.
-const PASSES: usize = 64;
-
-/// Whether the general solver's core search proves an optimum within so many passes. A count, so that it repeats.
-pub fn is_proved(problem: &Problem) -> bool {
-    let item = |class: usize, level: usize| {
-        let (units, benefit) = problem.item(class, level);
-        Item { cost: units as f64, benefit }
-    };
-    let class = |i: usize| (0..problem.levels(i).len()).map(|l| item(i, l)).collect::<Vec<_>>();
-    let instance = Instance::new(problem.budget as f64, (0..problem.classes.len()).map(class));
-    let mut passes = 0;
-    let mut stop = || {
-        passes += 1;
-        passes > PASSES
-    };
-    exact(&instance.expect("a good instance"), &mut stop).optimal
 }

@@ -63,5 +63,6 @@ pub use instance::{Instance, InstanceError, Item};
 #[cfg(feature = "files")]
 pub use json::InstanceJsonError;
 pub use shared::{Crowd, OddClass, Outcome, Position, ProfileItem, Profiles, SharedClass, SharedKnapsack};
+pub(crate) use shared::{Hold, Units, sift};
 pub use solution::Solution;
 pub use sum::FixedSum;

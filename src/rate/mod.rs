@@ -39,9 +39,15 @@ pub fn cost_us(model: &CostModel, rates: &TableRates, candidate: &Candidate, lev
     model.object_us(geometry_us, f64::from(candidate.cost_scale), f64::from(candidate.area_px2))
 }
 
-/// Appends the candidates of a group of one view without their details: slots, weights and the sum of areas. The caller
-/// closes the run with [`Candidates::end_group`]. Candidates must not be detailed.
-pub fn weigh(objects: &Objects, seen: &Seen, model: &BenefitModel, candidates: &mut Candidates) {
+/// Appends the candidates of a group of one view without their details: slots, weights and the sum of areas; the sizes too
+/// where they are asked for. The caller closes the run with [`Candidates::end_group`]. Candidates must not be detailed.
+pub fn weigh(
+    objects: &Objects,
+    seen: &Seen,
+    model: &BenefitModel,
+    with_sizes: bool,
+    candidates: &mut Candidates,
+) {
     let lens = &seen.lens;
     for &VisibleBlock { block: index, mask } in &seen.visible {
         let block = &objects.blocks()[index as usize];
@@ -58,7 +64,22 @@ pub fn weigh(objects: &Objects, seen: &Seen, model: &BenefitModel, candidates: &
             *weight *= gain;
         }
         candidates.push_row(index, mask, &area);
+        if with_sizes {
+            candidates.push_sizes(mask, &sizes_px(objects, index, block, lens, mask));
+        }
     }
+}
+
+/// The projected diameters of the lanes of `mask`, bias included, and of the others as they are.
+fn sizes_px(objects: &Objects, index: u32, block: &Block, lens: &Lens, mask: u16) -> [f32; BLOCK] {
+    let mut sizes_px = [0.0; BLOCK];
+    for (lane, size_px) in sizes_px.iter_mut().enumerate() {
+        *size_px = lens.size_px(&block.sphere(lane));
+    }
+    for lane in lanes(block.special & mask) {
+        sizes_px[lane] *= objects.settings(index as usize * BLOCK + lane).bias;
+    }
+    sizes_px
 }
 
 /// The areas of the lanes of `mask` as they count for the pixel stage, rounded so that their sum is exact.

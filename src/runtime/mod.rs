@@ -271,7 +271,8 @@ impl Runtime {
             if in_detail {
                 rate(objects, &self.rates, &seen[..count], &self.options.benefit, cursors, candidates);
             } else {
-                weigh(objects, &seen[0], &self.options.benefit, candidates);
+                let with_sizes = self.selector.needs() == Needs::Sizes;
+                weigh(objects, &seen[0], &self.options.benefit, with_sizes, candidates);
             }
             candidates.end_group(group, seen[0].lens, count);
             first += count;

@@ -8,6 +8,7 @@ mod funkhouser_sequin;
 mod predictive;
 mod reactive;
 mod screen_size;
+mod sweep;
 
 pub use fixed::{Coarsest, Finest};
 pub use funkhouser_sequin::FunkhouserSequin;
@@ -116,6 +117,8 @@ impl Frame<'_> {
 pub enum Needs {
     /// Weights; details now and then, through [`Frame::candidate`].
     Weights,
+    /// Weights and projected diameters ([`Candidates::size_px`]).
+    Sizes,
     /// All columns.
     #[default]
     Details,

@@ -1,9 +1,11 @@
 //! The reactive policy: screen size times a factor that the measured frame time steers.
 
 use super::screen_size::ScreenSizeOptions;
-use super::{Frame, Selector};
+use super::sweep::Sweep;
+use super::{Frame, Needs, Selector};
 use crate::frame::OptionsError;
-use crate::frame::{Cause, SelectReport, Timing};
+use crate::frame::{Candidate, Cause, SelectReport, Timing};
+use crate::rate::TableRates;
 use crate::table::Level;
 
 /// Options of [`Reactive`].
@@ -71,13 +73,14 @@ const PROBE_EVERY: std::ops::RangeInclusive<u32> = 30..=7680;
 
 /// Screen size with feedback. Cannot foresee: it is late by the time of measurement and filter whenever complex objects
 /// come into view.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Reactive {
     options: ReactiveOptions,
     factor: f32,
     in_band: u32,
     saturated: Saturation,
     probe: Probe,
+    sweep: Sweep,
 }
 
 /// Whether the last selection could still follow the factor.
@@ -85,6 +88,15 @@ pub struct Reactive {
 struct Saturation {
     all_finest: bool,
     all_coarsest: bool,
+}
+
+impl Saturation {
+    /// One more candidate, at this level.
+    fn heed(&mut self, rates: &TableRates, candidate: &Candidate, level: Level) {
+        let Candidate { table, allowed, .. } = *candidate;
+        self.all_finest &= level == allowed.finest;
+        self.all_coarsest &= level >= allowed.coarsest.min(rates.coarsest(table));
+    }
 }
 
 /// The search for hidden room.
@@ -109,7 +121,13 @@ impl Reactive {
     /// An option that is out of its range.
     pub fn new(options: ReactiveOptions) -> Result<Self, OptionsError> {
         options.check()?;
-        Ok(Self { options, factor: 1.0, in_band: 0, saturated: Saturation::default(), probe: Probe::START })
+        Ok(Self::start(options, Sweep::default()))
+    }
+
+    /// Before the first measurement.
+    fn start(options: ReactiveOptions, sweep: Sweep) -> Self {
+        let saturated = Saturation::default();
+        Self { options, factor: 1.0, in_band: 0, saturated, probe: Probe::START, sweep }
     }
 
     /// The factor on sizes at present.
@@ -164,19 +182,21 @@ impl Reactive {
 }
 
 impl Selector for Reactive {
+    fn needs(&self) -> Needs {
+        Needs::Sizes
+    }
+
     fn select(&mut self, frame: &Frame<'_>, levels: &mut [Level]) -> SelectReport {
         self.steer(&frame.timing, frame.budget.target_us);
-        let mut saturated = Saturation { all_finest: true, all_coarsest: true };
-        for (group, range) in frame.candidates.groups() {
-            for i in range {
-                levels[i] = self.options.size.level(frame, i, self.factor, group.lens.height_px);
-                saturated.all_finest &= levels[i] == frame.candidates.allowed[i].finest;
-                let coarsest = frame.rates.coarsest(frame.candidates.table[i]);
-                saturated.all_coarsest &= levels[i] >= frame.candidates.allowed[i].coarsest.min(coarsest);
-            }
-        }
-        self.saturated = saturated;
-        frame.report(levels)
+        let (sweep, rates) = (&mut self.sweep, frame.rates);
+        let mut chosen = Saturation { all_finest: true, all_coarsest: true };
+        let heed = |candidate: &Candidate, level| chosen.heed(rates, candidate, level);
+        self.options.size.choose(frame, self.factor, sweep, levels, heed);
+        self.saturated = Saturation {
+            all_finest: chosen.all_finest && sweep.every(rates, |_, level| level == Level::FINEST),
+            all_coarsest: chosen.all_coarsest && sweep.every(rates, |table, l| l == rates.coarsest(table)),
+        };
+        sweep.report(frame)
     }
 
     fn cause(&self, frame: &Frame<'_>, i: usize, level: Level) -> Cause {
@@ -184,16 +204,10 @@ impl Selector for Reactive {
     }
 
     fn reset(&mut self) {
-        *self = Self {
-            options: self.options,
-            factor: 1.0,
-            in_band: 0,
-            saturated: Saturation::default(),
-            probe: Probe::START,
-        };
+        *self = Self::start(self.options, std::mem::take(&mut self.sweep));
     }
 
     fn boxed_clone(&self) -> Box<dyn Selector> {
-        Box::new(*self)
+        Box::new(self.clone())
     }
 }

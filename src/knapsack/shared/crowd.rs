@@ -311,7 +311,9 @@ impl SharedKnapsack {
             aside.classes += u64::from(count);
             aside.cost += profiles.item_ticks(item)[1] * u64::from(count);
         }
-        aside.benefit = sift(crowd.weight, crowd.place, profiles.holds(), bracket, |i| opened.push(i as u32));
+        let holds = profiles.holds();
+        let open = |i: usize| opened.push(i as u32);
+        aside.benefit = sift(crowd.weight, crowd.weight, crowd.place, holds, bracket, open);
         let mut read = crowd.reader(profiles);
         for &i in opened.iter() {
             let shared = read(i as usize);

@@ -22,6 +22,7 @@ mod sift;
 pub use certificate::Outcome;
 pub use crowd::{Crowd, OddClass};
 pub use profiles::{Position, ProfileItem, Profiles};
+pub(crate) use sift::{Hold, Units, sift};
 
 use certificate::Sums;
 use class::{Class, scaled};

@@ -12,7 +12,7 @@ use glam::{Mat4, Vec4};
 /// - *rest*: it takes no further step while its weight is below λ times this;
 /// - *value* of the item, and of the cheapest item of its profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Hold(Vec4);
+pub(crate) struct Hold(Vec4);
 
 /// Reciprocals are moved outwards by more than the three roundings of single precision that slopes and comparisons take.
 const OUTWARDS: f32 = 1.0e-6;
@@ -28,6 +28,11 @@ impl Hold {
         Self(Vec4::new(keep, rest, value, least))
     }
 
+    /// Of an item that is held from `keep` up to `rest` (exclusive), exactly.
+    pub fn within(keep: f32, rest: f32, value: f32) -> Self {
+        Self(Vec4::new(keep, rest, value, 0.0))
+    }
+
     /// Whether a settled class of this weight may have a further step whose slope is `low` or more.
     pub fn may_go_on(self, weight: f32, low: f32) -> bool {
         weight >= low * self.0.y
@@ -36,7 +41,7 @@ impl Hold {
 
 /// Benefit of classes, in units: where they are, and at their cheapest positions.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Units {
+pub(crate) struct Units {
     pub value: i128,
     pub least: i128,
     /// One unit.
@@ -48,6 +53,11 @@ impl Units {
     pub fn of(&self, weight: f32, value: f32) -> i128 {
         let rounding = rounding(self.unit);
         i128::from(((product(weight, value) + rounding - rounding) / self.unit) as i64)
+    }
+
+    /// The benefit of where the classes are.
+    pub fn benefit(&self) -> f64 {
+        self.value as f64 * self.unit
     }
 }
 
@@ -67,8 +77,10 @@ struct Lanes {
 }
 
 /// Finds the classes that are not settled for every λ of the bracket, tells `open` of each, and returns the benefit of
-/// those that are, in a unit that follows from the heaviest class. The last of `holds` is open.
-pub(super) fn sift(
+/// those that are, in a unit that follows from the heaviest class. The last of `holds` is open. What `holds` are about is
+/// the `size` of a class: its weight, or another number.
+pub(crate) fn sift(
+    size: &[f32],
     weight: &[f32],
     place: &[u32],
     holds: &[Hold],
@@ -84,18 +96,20 @@ pub(super) fn sift(
             opened &= opened - 1;
         }
     };
+    let (sizes, last_sizes) = size.as_chunks::<LANES>();
     let (weights, last_weights) = weight.as_chunks::<LANES>();
     let (places, last_places) = place.as_chunks::<LANES>();
-    for (at, (weight, place)) in weights.iter().zip(places).enumerate() {
-        told(at, !sift_lanes(weight, place, holds, bracket, rounding, &mut sums));
+    for (at, ((size, weight), place)) in sizes.iter().zip(weights).zip(places).enumerate() {
+        told(at, !sift_lanes(size, weight, place, holds, bracket, rounding, &mut sums));
         if at % CARRY_EVERY == CARRY_EVERY - 1 {
             carry(&mut sums, &mut settled);
         }
     }
-    let (mut weight, mut place) = ([0.0; LANES], [u32::MAX; LANES]);
+    let (mut size, mut weight, mut place) = ([0.0; LANES], [0.0; LANES], [u32::MAX; LANES]);
+    size[..last_sizes.len()].copy_from_slice(last_sizes);
     weight[..last_weights.len()].copy_from_slice(last_weights);
     place[..last_places.len()].copy_from_slice(last_places);
-    let opened = !sift_lanes(&weight, &place, holds, bracket, rounding, &mut sums);
+    let opened = !sift_lanes(&size, &weight, &place, holds, bracket, rounding, &mut sums);
     told(weights.len(), opened & ((1u32 << last_weights.len()) - 1) as u16);
     carry(&mut sums, &mut settled);
     settled
@@ -103,6 +117,7 @@ pub(super) fn sift(
 
 /// One chunk: which lanes are settled; their benefit goes into the sums.
 fn sift_lanes(
+    size: &[f32; LANES],
     weight: &[f32; LANES],
     place: &[u32; LANES],
     holds: &[Hold],
@@ -113,8 +128,8 @@ fn sift_lanes(
     let [keep, rest, value, least] = columns(place, holds);
     let mut stays = [0; LANES];
     for lane in 0..LANES {
-        let w = weight[lane];
-        let is_settled = (w >= high * keep[lane]) & (w < low * rest[lane]);
+        let (s, w) = (size[lane], weight[lane]);
+        let is_settled = (s >= high * keep[lane]) & (s < low * rest[lane]);
         stays[lane] = u32::from(is_settled);
         let counted = if is_settled { w } else { 0.0 };
         sums.value[lane] += product(counted, value[lane]) + rounding - rounding;
