@@ -8,12 +8,14 @@ mod funkhouser_sequin;
 mod predictive;
 mod reactive;
 mod screen_size;
+mod steadiness;
 
 pub use fixed::{Coarsest, Finest};
 pub use funkhouser_sequin::FunkhouserSequin;
 pub use predictive::{Predictive, PredictiveOptions};
 pub use reactive::{Reactive, ReactiveOptions};
 pub use screen_size::{Measure, ScreenSize, ScreenSizeOptions};
+pub use steadiness::Steadiness;
 
 use crate::frame::{Budget, Candidate, Candidates, Cause, FrameId, SelectReport, Timing};
 use crate::knapsack::FixedSum;
@@ -137,6 +139,12 @@ pub trait Selector: Send {
     fn cause(&self, frame: &Frame<'_>, i: usize, level: Level) -> Cause {
         let _ = (frame, i, level);
         Cause::Budget
+    }
+
+    /// Candidates of the last selection, ascending, that the policy holds back from a finer level that it has chosen.
+    /// [`Candidates::account`] tells it in the next frame for how long. `None` from a policy that has no use for accounts.
+    fn owed(&self) -> Option<&[u32]> {
+        None
     }
 
     /// Forgets everything learnt from earlier frames.

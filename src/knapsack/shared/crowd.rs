@@ -39,7 +39,8 @@ impl<F: Fn(usize) -> f32> Crowd<'_, F> {
         (self.place[i] as usize) < self.census.len()
     }
 
-    fn class(&self, profiles: &Profiles, i: usize) -> SharedClass {
+    /// A class in full.
+    pub fn class(&self, profiles: &Profiles, i: usize) -> SharedClass {
         if self.holds_item(i) {
             return profiles.class_at(self.place[i], self.weight[i], (self.stay)(i));
         }

@@ -21,7 +21,7 @@ mod sift;
 
 pub use certificate::Outcome;
 pub use crowd::{Crowd, OddClass};
-pub use profiles::{Position, ProfileItem, Profiles};
+pub use profiles::{Offer, Position, ProfileItem, Profiles};
 
 use certificate::Sums;
 use class::{Class, scaled};
