@@ -12,9 +12,10 @@
 //!   price of a switch: at once where much is owed, later where little is, never where the optimum changes its mind
 //!   before. That is the break-even rule of renting or buying skis, which knows no future and pays at most twice what it
 //!   would have paid had it known (Karlin, Manasse, Rudolph and Sleator, "Competitive snoopy caching", 1988).
-//! - Budget that would stay unspent, beyond a dead band, goes to debts before they are due, those of the most benefit
-//!   per cost first: they are the farthest from λ, and so the last that the optimum will change its mind about.
-//! - While all that is owed together is next to nothing, nobody is refined: a camera at rest stays at rest under noise.
+//! - While all that is owed together is next to nothing, nothing is due: a camera at rest stays at rest under noise.
+//! - Budget that would stay unspent, beyond a dead band, goes to debts that are not due, those of the most benefit
+//!   first: that takes the fewest switches. Without it one dear level that is worth next to nothing leaves half the
+//!   budget unspent for seconds.
 //! - A leaky bucket per object bounds the worst rate of refinements, and with it that of switches.
 //!
 //! The same debts are paid in whatever order they are found. The optimum's upper bound certifies what is shown.
@@ -32,7 +33,7 @@ pub struct Steadiness {
     pub patience_s: f32,
     /// What has been owed for so long is paid however little it is. Decides when the last detail arrives.
     pub longest_ms: u16,
-    /// While no more than this share of the gain is owed in all, nothing is paid. In 0…1, exclusive.
+    /// While no more than this share of the gain is owed in all, nothing is due. In 0…1, exclusive.
     pub content: f64,
     /// Dead band of the budget, as a fraction of it: what is left beyond it goes to debts that are not due. In 0…1; at 1
     /// none does. Higher switches less and leaves more unspent.
@@ -77,7 +78,7 @@ impl Steadiness {
         surplus * seconds * optimum.objects as f64 >= price || debt.account.owed_ms >= self.longest_ms
     }
 
-    /// Whether so little is owed that nothing need be paid.
+    /// Whether so little is owed that nothing is due.
     fn is_content(&self, debts: &[Debt], optimum: &Optimum) -> bool {
         let mut owed = FixedSum::default();
         debts.iter().for_each(|debt| owed.add(debt.benefit / optimum.gain));
@@ -175,13 +176,12 @@ impl Accounts {
     }
 
     /// Pays the debts that are due, then calls in credits, the least benefit per cost first, until the budget is kept,
-    /// and spends what is left beyond the dead band on other debts, the most benefit per cost first. Returns the cost.
+    /// and spends what is left beyond the dead band on other debts, the most benefit first. Returns the cost.
     ///
     /// O(accounts), and a sort of the credits where some are called in, of the debts where some are paid early.
     pub fn settle(&mut self, steadiness: &Steadiness, optimum: &Optimum) -> u64 {
         let mut cost = self.held_cost(optimum);
-        let is_content = steadiness.is_content(&self.debts, optimum);
-        if !is_content {
+        if !steadiness.is_content(&self.debts, optimum) {
             self.pay(|debt| {
                 let pays = steadiness.is_due(debt, optimum) && !steadiness.is_full(debt.account);
                 cost = cost.saturating_add(if pays { debt.cost } else { 0 });
@@ -191,9 +191,8 @@ impl Accounts {
         if cost > optimum.budget {
             cost = cost.saturating_sub(self.call_in(cost - optimum.budget));
         }
-        if !is_content && cost < optimum.enough {
-            let slope = |debt: &Debt| debt.benefit / debt.cost as f64;
-            self.debts.sort_unstable_by(|a, b| slope(b).total_cmp(&slope(a)).then(a.key.cmp(&b.key)));
+        if cost < optimum.enough {
+            self.debts.sort_unstable_by(|a, b| b.benefit.total_cmp(&a.benefit).then(a.key.cmp(&b.key)));
             self.pay(|debt| {
                 let fits = cost < optimum.enough && debt.cost <= optimum.budget - cost;
                 let pays = fits && !steadiness.is_full(debt.account);
@@ -242,5 +241,130 @@ impl Accounts {
             self.settled.push((credit.candidate, credit.best));
         }
         freed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Benefit, ticks, and what is remembered.
+    type Entry = (f64, u64, Account);
+
+    fn entry() -> impl Strategy<Value = Entry> {
+        let account = (0..2000u16, any::<u8>()).prop_map(|(owed_ms, drops)| Account { owed_ms, drops });
+        (prop_oneof![0.0..10.0, Just(1.0)], 1..1000u64, account)
+    }
+
+    fn entries() -> impl Strategy<Value = Vec<Entry>> {
+        prop::collection::vec(entry(), 0..20)
+    }
+
+    fn steadiness() -> impl Strategy<Value = Steadiness> {
+        (0.0..1f32, 0..2000u16, 0.0..0.5, 1..=15u8).prop_map(|(patience_s, longest_ms, content, burst)| {
+            Steadiness { patience_s, longest_ms, content, burst, ..Steadiness::default() }
+        })
+    }
+
+    /// Debts first, then credits, each candidate numbered by its place.
+    fn accounts(debts: &[Entry], credits: &[Entry]) -> Accounts {
+        let mut accounts = Accounts::default();
+        let offer = |ticks: u64, benefit: f64| Offer { ticks: 50 + ticks, benefit };
+        let all = debts.iter().map(|e| (e, true)).chain(credits.iter().map(|e| (e, false)));
+        for (i, (&(benefit, cost, account), is_debt)) in all.enumerate() {
+            let [little, much] = [offer(0, 0.0), offer(cost, benefit + 0.01)];
+            let offers = if is_debt { [little, much] } else { [much, little] };
+            accounts.open((i as u32, i as u128), Level(0), offers, account);
+        }
+        accounts
+    }
+
+    /// Candidates that settle, and what is spent.
+    fn settled(mut accounts: Accounts, steadiness: &Steadiness, optimum: &Optimum) -> (Vec<u32>, u64) {
+        let cost = accounts.settle(steadiness, optimum);
+        let mut settled: Vec<u32> = accounts.settled.iter().map(|&(i, _)| i).collect();
+        settled.sort_unstable();
+        (settled, cost)
+    }
+
+    /// An optimum of 10 000 ticks beside those of the debts, of which `spare` are to stay.
+    fn optimum(debts: &[Entry], left: u64, spare: u64) -> Optimum {
+        let cost = 10_000 + debts.iter().map(|d| d.1).sum::<u64>();
+        let budget = cost + left;
+        Optimum { gain: 500.0, objects: 100, lambda: 1e-3, cost, budget, enough: budget - spare }
+    }
+
+    proptest! {
+        #[test]
+        fn the_budget_is_kept_and_spent_and_the_order_does_not_matter(
+            debts in entries(),
+            credits in entries(),
+            (left, spare) in (0..3000u64, 0..3000u64),
+            steadiness in steadiness(),
+        ) {
+            let optimum = optimum(&debts, left, spare);
+            let mut forwards = accounts(&debts, &credits);
+            let mut backwards = forwards.clone();
+            backwards.debts.reverse();
+            backwards.credits.reverse();
+            let (paid, cost) = settled(forwards.clone(), &steadiness, &optimum);
+            prop_assert_eq!((&paid, cost), (&settled(backwards, &steadiness, &optimum).0, cost));
+            forwards.settle(&steadiness, &optimum);
+            let still_owed: u64 = forwards.debts.iter().map(|d| d.cost).sum();
+            let kept: u64 = forwards.credits.iter().map(|c| c.cost).sum();
+            prop_assert_eq!(cost, optimum.cost + kept - still_owed);
+            prop_assert!(cost <= optimum.budget);
+            let affordable = |d: &Debt| cost + d.cost <= optimum.budget && !steadiness.is_full(d.account);
+            prop_assert!(cost >= optimum.enough || !forwards.debts.iter().any(affordable));
+            let full = |d: &Entry| steadiness.is_full(d.2);
+            prop_assert!(paid.iter().all(|&i| debts.get(i as usize).is_none_or(|d| !full(d))));
+        }
+    }
+
+    #[test]
+    fn no_more_credits_are_called_in_than_the_budget_asks_for() {
+        let credit = |benefit: f64| (benefit, 10, Account::default());
+        let found = accounts(&[], &[credit(5.0), credit(1.0), credit(3.0)]);
+        assert_eq!(settled(found, &Steadiness::default(), &optimum(&[], 15, 15)), (vec![1, 2], 10_010));
+    }
+
+    #[test]
+    fn much_is_paid_at_once_and_little_later() {
+        let optimum = optimum(&[(0.0, 300, Account::default())], 0, 1000);
+        let is_paid = |benefit: f64, owed_ms: u16| {
+            let debts = [
+                (benefit, 100, Account { owed_ms, drops: 0 }),
+                (2.0, 100, Account { owed_ms: 0, drops: 255 }),
+            ];
+            settled(accounts(&debts, &[]), &Steadiness::default(), &optimum).0 == [0]
+        };
+        assert!(is_paid(100.0, 0));
+        assert!(!is_paid(1.0, 0) && is_paid(1.0, 500));
+        assert!(!is_paid(0.15, 990) && is_paid(0.15, 1000));
+    }
+
+    #[test]
+    fn what_would_stay_unspent_pays_the_most_first() {
+        let debts = [1.0, 3.0, 2.0].map(|benefit| (benefit, 100, Account::default()));
+        let paid = |spare: u64| {
+            let patient = Steadiness { patience_s: 3600.0, ..Steadiness::default() };
+            settled(accounts(&debts, &[]), &patient, &optimum(&debts, 0, spare)).0
+        };
+        assert_eq!([paid(300), paid(200), paid(150), paid(0)], [vec![], vec![1], vec![1, 2], vec![0, 1, 2]]);
+    }
+
+    #[test]
+    fn what_is_better_for_no_more_is_taken_at_once() {
+        let mut accounts = Accounts::default();
+        let offer = |ticks: u64, benefit: f64| Offer { ticks, benefit };
+        let offers =
+            [[offer(5, 1.0), offer(5, 2.0)], [offer(5, 1.0), offer(4, 1.0)], [offer(4, 2.0), offer(5, 2.0)]];
+        for (i, offers) in offers.into_iter().enumerate() {
+            accounts.open((i as u32, 0), Level(i as u8), offers, Account::default());
+        }
+        assert_eq!(accounts.settled, [(0, Level(0)), (1, Level(1)), (2, Level(2))]);
+        assert!(accounts.debts.is_empty() && accounts.credits.is_empty());
     }
 }
