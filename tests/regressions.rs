@@ -10,11 +10,11 @@ use std::collections::VecDeque;
 use glam::{DVec3, Quat, Vec2, Vec3};
 use lod_budget::bounds::Sphere;
 use lod_budget::frame::{
-    Budget, Candidate, Candidates, Clock, FrameId, FrameTime, GroupId, SelectReport, Timing,
+    Budget, Candidate, Candidates, Change, Clock, FrameId, FrameTime, GroupId, SelectReport, Timing,
 };
 use lod_budget::rate::{CostModel, Stages, TableRates, cost_us};
 use lod_budget::runtime::{Activity, FrameInput, Runtime, RuntimeOptions, ViewInput};
-use lod_budget::scene::{LevelRange, Object, ObjectId, Objects, Settings, TableId};
+use lod_budget::scene::{BLOCK, LevelRange, Object, ObjectId, Objects, Settings, TableId};
 use lod_budget::select::{
     Coarsest, Finest, Frame, FunkhouserSequin, Measure, Predictive, PredictiveOptions, Reactive,
     ReactiveOptions, ScreenSize, ScreenSizeOptions, Selector, Steadiness,
@@ -341,6 +341,31 @@ fn a_bucket_bounds_the_worst_rate_of_refinements() {
         let allowed = usize::from(burst) + 10_000 / 256;
         assert!(most <= allowed && most > allowed / 2, "{most} with {burst}");
     }
+}
+
+/// The changes of every frame of a camera that goes to and fro, while objects change their slots as told.
+fn changes_of_a_walk(reorder: impl Fn(usize, &mut Objects)) -> Vec<Vec<Change>> {
+    let patient = Steadiness { spare: 1.0, content: 0.0, burst: 1, ..Steadiness::default() };
+    let (mut runtime, mut objects) = (runtime(steady(patient)), field());
+    let frame = |n: usize| {
+        reorder(n, &mut objects);
+        let z = (n as f64 * 0.05).sin() * 3.0;
+        step(&mut runtime, &mut objects, at(z), half_us());
+        runtime.changes().to_vec()
+    };
+    (0..240).map(frame).collect()
+}
+
+#[test]
+fn what_is_owed_follows_an_object_to_another_slot() {
+    let turned = changes_of_a_walk(|n, objects| {
+        let slots = (0..objects.blocks().len() * BLOCK).filter(|&s| objects.id_of(s).is_some());
+        let backwards: Vec<u32> = slots.map(|slot| slot as u32).rev().collect();
+        if n % 7 == 3 {
+            objects.reorder(&backwards);
+        }
+    });
+    assert_eq!(turned, changes_of_a_walk(|_, _| ()));
 }
 
 #[test]
