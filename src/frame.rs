@@ -58,6 +58,9 @@ pub struct Candidates {
     pub place: Vec<u32>,
     /// How many candidates there are at each place.
     pub census: Vec<u32>,
+    /// What the policy owes to each; empty where it keeps no accounts
+    /// ([`Selector::owed`](crate::select::Selector::owed)).
+    pub account: Vec<Account>,
     /// See [`Candidate::table`].
     pub table: Vec<u16>,
     /// See [`Candidate::allowed`].
@@ -76,6 +79,30 @@ pub struct Candidates {
     pub rows: Vec<Row>,
     /// Where each group's candidates end, in the order of groups.
     pub ends: Vec<GroupEnd>,
+}
+
+/// What is remembered of an object for a policy that does not show at once all that it has chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Account {
+    /// For how long the policy has held back a finer level, at most what 16 bits hold; 0 when it does not.
+    pub owed_ms: u16,
+    /// What is in the leaky bucket that counts refinements: each puts in [`Account::REFINEMENT_DROPS`], each
+    /// [`Account::LEAK_MS`] takes one drop away.
+    pub drops: u8,
+}
+
+impl Account {
+    /// So many drops a refinement puts into the bucket.
+    pub const REFINEMENT_DROPS: u8 = 16;
+    /// Time in which the bucket loses a drop.
+    pub const LEAK_MS: u32 = 16;
+
+    /// The account after so long: what is owed goes on being owed.
+    pub(crate) fn after(self, owed_for_ms: u16, leaking_for_ms: u32) -> Self {
+        let leaked = (leaking_for_ms / Self::LEAK_MS).min(u32::from(u8::MAX)) as u8;
+        let owed_ms = if self.owed_ms > 0 { self.owed_ms.saturating_add(owed_for_ms) } else { 0 };
+        Self { owed_ms, drops: self.drops.saturating_sub(leaked) }
+    }
 }
 
 /// See [`Candidates::place`].
@@ -157,6 +184,7 @@ impl Candidates {
         self.previous.clear();
         self.age_ms.clear();
         self.place.clear();
+        self.account.clear();
         self.census.clear();
         self.census.resize(places, 0);
         self.clear_details();
@@ -238,6 +266,11 @@ impl Candidates {
             near_px: self.near_px[i],
             area_px2: self.area_px2[i],
         }
+    }
+
+    /// What the policy owes to candidate `i`: nothing where no accounts are kept.
+    pub fn account_of(&self, i: usize) -> Account {
+        self.account.get(i).copied().unwrap_or_default()
     }
 
     /// Rewrites details. No candidate keeps its place: what it costs may no longer be what its table says.
@@ -368,7 +401,8 @@ pub struct Certificate {
     pub upper_bound: f64,
     /// (bound − benefit) ÷ (bound − benefit of the minimum choice), of the plain benefit; 0 where that is 0 ÷ 0.
     pub gap: f64,
-    /// The same of the objective with switching prices folded in.
+    /// The same of the objective with switching prices folded in; under [`Steadiness`](crate::select::Steadiness), of the
+    /// choice that is led to.
     pub penalised_gap: f64,
     /// The multiplier λ: what a microsecond is worth in px² where the budget ends; 0 when everything fits.
     pub lambda: f64,

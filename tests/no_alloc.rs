@@ -11,7 +11,10 @@ use lod_budget::frame::{FrameTime, GroupId};
 use lod_budget::rate::{CostModel, Stages};
 use lod_budget::runtime::{FrameInput, Runtime, RuntimeOptions, ViewInput};
 use lod_budget::scene::{LevelRange, Object, Objects, Settings};
-use lod_budget::select::{Coarsest, Finest, FunkhouserSequin, Predictive, Reactive, ScreenSize, Selector};
+use lod_budget::select::{
+    Coarsest, Finest, FunkhouserSequin, Predictive, PredictiveOptions, Reactive, ScreenSize, Selector,
+    Steadiness,
+};
 use lod_budget::table::{LevelRecord, LodTable};
 use lod_budget::transition::{TransitionKind, TransitionOptions};
 use lod_budget::view::View;
@@ -96,7 +99,8 @@ fn fly(runtime: &mut Runtime, objects: &mut Objects, budget_us: f64) -> usize {
     changes
 }
 
-fn selectors() -> [Box<dyn Selector>; 6] {
+fn selectors() -> [Box<dyn Selector>; 7] {
+    let steady = PredictiveOptions { steadiness: Some(Steadiness::default()), ..Default::default() };
     [
         Box::new(Finest),
         Box::new(Coarsest),
@@ -104,6 +108,7 @@ fn selectors() -> [Box<dyn Selector>; 6] {
         Box::new(Reactive::new(Default::default()).expect("defaults are good")),
         Box::new(FunkhouserSequin::default()),
         Box::new(Predictive::default()),
+        Box::new(Predictive::new(steady).expect("good options")),
     ]
 }
 

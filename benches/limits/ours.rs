@@ -142,7 +142,7 @@ impl Policy {
 }
 
 fn free_of_charge() -> Predictive {
-    let options = PredictiveOptions { hysteresis: 0.0, dwell_ms: 0, dwell: 0.0, ease: 0.0 };
+    let options = PredictiveOptions { steadiness: None, hysteresis: 0.0, dwell_ms: 0, dwell: 0.0, ease: 0.0 };
     Predictive::new(options).expect("good options")
 }
 

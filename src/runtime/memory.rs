@@ -1,6 +1,6 @@
 //! What is remembered of earlier frames, per view group and slot: sixteen slots to a block, as the objects are.
 
-use crate::frame::{Candidates, Cause, Change, GroupId, NO_PLACE, Row};
+use crate::frame::{Account, Candidates, Cause, Change, GroupId, NO_PLACE, Row};
 use crate::rate::TableRates;
 use crate::scene::{BLOCK, ObjectId, Objects, lanes};
 use crate::table::Level;
@@ -40,6 +40,35 @@ impl BlockMemory {
     };
 }
 
+/// The accounts of the objects of a block.
+#[derive(Clone, Copy, Debug)]
+struct BlockAccounts {
+    /// Drops are those of the time when the level that is wanted came to be wanted.
+    account: [Account; BLOCK],
+    /// Bit per lane: it was owed something in this one of the group's frames.
+    owing: u16,
+    frame: u32,
+}
+
+impl BlockAccounts {
+    const EMPTY: Self = Self { account: [Account { owed_ms: 0, drops: 0 }; BLOCK], owing: 0, frame: 0 };
+
+    /// What was owed at the end of a frame, and the drops.
+    fn get(&self, lane: usize, frame: u32) -> Account {
+        let is_owed = self.frame == frame && self.owing & (1 << lane) != 0;
+        Account { owed_ms: if is_owed { self.account[lane].owed_ms } else { 0 }, ..self.account[lane] }
+    }
+
+    fn set(&mut self, lane: usize, frame: u32, account: Account) {
+        if self.frame != frame {
+            (self.frame, self.owing) = (frame, 0);
+        }
+        self.account[lane] = account;
+        self.owing &= !(1 << lane);
+        self.owing |= u16::from(account.owed_ms > 0) << lane;
+    }
+}
+
 /// What is shown in a slot where it is not simply the level that is wanted.
 #[derive(Clone, Copy, Debug)]
 struct Unsteady {
@@ -54,7 +83,11 @@ pub(super) struct GroupMemory {
     /// The group's own count of frames. The first is 2, so that no slot seems to have been seen in the one before.
     frame: u32,
     clock_ms: f64,
+    /// Whole milliseconds since the frame before.
+    elapsed_ms: u16,
     blocks: Vec<BlockMemory>,
+    /// Of every block, where the policy has use for them; else none.
+    accounts: Vec<BlockAccounts>,
     /// Slots with an unsteady bit, ascending; those of this frame's end are in `fresh`.
     unsteady: Vec<Unsteady>,
     fresh: Vec<Unsteady>,
@@ -98,7 +131,9 @@ impl GroupMemory {
             id,
             frame: 1,
             clock_ms: 0.0,
+            elapsed_ms: 0,
             blocks: Vec::new(),
+            accounts: Vec::new(),
             unsteady: Vec::new(),
             fresh: Vec::new(),
             rows: Vec::new(),
@@ -114,7 +149,14 @@ impl GroupMemory {
         self.stayed = 0;
         std::mem::swap(&mut self.rows, &mut self.before);
         self.rows.clear();
+        let elapsed_ms = whole_ms(clock_ms).wrapping_sub(whole_ms(self.clock_ms));
+        self.elapsed_ms = elapsed_ms.min(u32::from(u16::MAX)) as u16;
         clock_ms - std::mem::replace(&mut self.clock_ms, clock_ms)
+    }
+
+    /// Keeps accounts of every block from now on.
+    pub fn keep_accounts(&mut self) {
+        self.accounts.resize(self.blocks.len(), BlockAccounts::EMPTY);
     }
 
     /// Notes that the candidates of a row are in view, and adds what is remembered of them to the candidates and to
@@ -144,6 +186,14 @@ impl GroupMemory {
             levels.extend_from_slice(&memory.wanted);
         } else {
             memory.recall_lanes(row, now_ms, candidates, levels);
+        }
+        if let Some(accounts) = self.accounts.get(row.block as usize) {
+            candidates.account.extend(lanes(row.mask).map(|lane| {
+                let known = row.known & (1 << lane) != 0;
+                let age_ms = now_ms.wrapping_sub(memory.since_ms[lane]);
+                let account = accounts.get(lane, self.frame - 1).after(self.elapsed_ms, age_ms);
+                if known { account } else { Account::default() }
+            }));
         }
     }
 
@@ -185,12 +235,31 @@ impl GroupMemory {
         let since_ms = whole_ms(self.clock_ms).wrapping_sub(LONG_AGO_MS);
         self.blocks[slot as usize / BLOCK].set(slot, wanted, place, since_ms);
         self.blocks[slot as usize / BLOCK].unsteady &= !(1 << (slot as usize % BLOCK));
+        if let Some(accounts) = self.accounts.get_mut(slot as usize / BLOCK) {
+            accounts.set(slot as usize % BLOCK, self.frame, Account::default());
+        }
     }
 
     /// Notes that something else is wanted than before.
     pub fn want(&mut self, slot: u32, wanted: Level, place: u32) {
         let since_ms = whole_ms(self.clock_ms);
-        self.blocks[slot as usize / BLOCK].set(slot, wanted, place, since_ms);
+        let (memory, lane) = (&mut self.blocks[slot as usize / BLOCK], slot as usize % BLOCK);
+        if let Some(accounts) = self.accounts.get_mut(slot as usize / BLOCK) {
+            let put_in = if wanted < memory.wanted[lane] { Account::REFINEMENT_DROPS } else { 0 };
+            let age_ms = since_ms.wrapping_sub(memory.since_ms[lane]);
+            let account = accounts.account[lane].after(0, age_ms);
+            let drops = account.drops.saturating_add(put_in);
+            accounts.set(lane, self.frame, Account { owed_ms: 0, drops });
+        }
+        memory.set(slot, wanted, place, since_ms);
+    }
+
+    /// Notes that a finer level of a slot has been held back for so long.
+    pub fn owe(&mut self, slot: u32, owed_ms: u16) {
+        if let Some(accounts) = self.accounts.get_mut(slot as usize / BLOCK) {
+            let lane = slot as usize % BLOCK;
+            accounts.set(lane, self.frame, Account { owed_ms, ..accounts.account[lane] });
+        }
     }
 
     /// Notes what is shown in a slot in view; once per slot and frame. Reading it may yield what was shown before until
@@ -259,6 +328,9 @@ impl GroupMemory {
     ) {
         let moved = self.take_moved(objects, tenants, revision);
         self.blocks.resize(objects.blocks().len(), BlockMemory::EMPTY);
+        if !self.accounts.is_empty() {
+            self.keep_accounts();
+        }
         for (id, state) in moved {
             match objects.slot_of(id) {
                 Some(slot) => self.put(slot, state),
@@ -297,10 +369,10 @@ impl GroupMemory {
                 };
                 let shown = self.shown_at(slot);
                 let (memory, lane) = (&mut self.blocks[row.block as usize], slot as usize % BLOCK);
-                moved.push((
-                    id,
-                    Moved { wanted: memory.wanted[lane], since_ms: memory.since_ms[lane], shown },
-                ));
+                let accounts = self.accounts.get(row.block as usize);
+                let account = accounts.map(|accounts| accounts.get(lane, self.frame)).unwrap_or_default();
+                let (wanted, since_ms) = (memory.wanted[lane], memory.since_ms[lane]);
+                moved.push((id, Moved { wanted, since_ms, shown, account }));
                 memory.seen &= !(1 << lane);
                 memory.unsteady &= !(1 << lane);
             }
@@ -320,6 +392,9 @@ impl GroupMemory {
         }
         memory.seen |= 1 << lane;
         memory.set(slot as u32, state.wanted, NO_PLACE, state.since_ms);
+        if let Some(accounts) = self.accounts.get_mut(slot / BLOCK) {
+            accounts.set(lane, self.frame, state.account);
+        }
         if state.shown != Shown::steady(state.wanted) {
             memory.unsteady |= 1 << lane;
             self.fresh.push(Unsteady { slot: slot as u32, shown: state.shown });
@@ -333,6 +408,7 @@ struct Moved {
     wanted: Level,
     since_ms: u32,
     shown: Shown,
+    account: Account,
 }
 
 impl BlockMemory {

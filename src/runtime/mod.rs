@@ -329,6 +329,9 @@ impl Runtime {
             let Scratch { candidates, levels, .. } = &mut self.scratch;
             let memory = memory::of_group(&mut self.groups, group);
             let dt_ms = memory.begin_frame(objects.blocks().len(), self.clock_ms);
+            if self.selector.owed().is_some() {
+                memory.keep_accounts();
+            }
             for at in first_row..end_row {
                 let mut row = candidates.rows[at];
                 memory.recall(&mut row, places, candidates, levels);
@@ -389,6 +392,7 @@ impl Runtime {
             let group = self.scratch.candidates.ends[run].group;
             self.find_news(run);
             self.note_wanted(objects, run);
+            self.note_owed(run);
             self.grant_requests(objects, group, &mut reserve_us);
             memory::of_group(&mut self.groups, group).end_frame(objects, &mut self.changes);
             self.scratch.all_news.extend_from_slice(&self.scratch.news);
@@ -446,6 +450,17 @@ impl Runtime {
             }
         }
         self.scratch.news = news;
+    }
+
+    /// Remembers which candidates of a group the policy holds back, and for how long.
+    fn note_owed(&mut self, run: usize) {
+        let (candidates, owed) = (&self.scratch.candidates, self.selector.owed().unwrap_or_default());
+        let (group, range) = (candidates.ends[run].group, candidates.run(run));
+        let memory = memory::of_group(&mut self.groups, group);
+        let first = owed.partition_point(|&i| (i as usize) < range.start);
+        for i in owed[first..].iter().map(|&i| i as usize).take_while(|i| range.contains(i)) {
+            memory.owe(candidates.slot[i], candidates.account_of(i).owed_ms.max(1));
+        }
     }
 
     /// Asks for a transition of candidate `i` to what is wanted. Where a level that is `shown` is no longer in its table

@@ -8,6 +8,7 @@ mod funkhouser_sequin;
 mod predictive;
 mod reactive;
 mod screen_size;
+mod steadiness;
 mod sweep;
 
 pub use fixed::{Coarsest, Finest};
@@ -15,6 +16,7 @@ pub use funkhouser_sequin::FunkhouserSequin;
 pub use predictive::{Predictive, PredictiveOptions};
 pub use reactive::{Reactive, ReactiveOptions};
 pub use screen_size::{Measure, ScreenSize, ScreenSizeOptions};
+pub use steadiness::Steadiness;
 
 use crate::frame::{Budget, Candidate, Candidates, Cause, FrameId, SelectReport, Timing};
 use crate::knapsack::FixedSum;
@@ -149,6 +151,12 @@ pub trait Selector: Send {
     fn cause(&self, frame: &Frame<'_>, i: usize, level: Level) -> Cause {
         let _ = (frame, i, level);
         Cause::Budget
+    }
+
+    /// Candidates of the last selection, ascending, that the policy holds back from a finer level that it has chosen.
+    /// [`Candidates::account`] tells it in the next frame for how long. `None` from a policy that has no use for accounts.
+    fn owed(&self) -> Option<&[u32]> {
+        None
     }
 
     /// Forgets everything learnt from earlier frames.

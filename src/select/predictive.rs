@@ -1,5 +1,6 @@
 //! The predictive policy: the multiple-choice knapsack under the budget of this frame.
 
+use super::steadiness::{Accounts, Optimum, Steadiness};
 use super::{Frame, Needs, Selector};
 use crate::frame::{Candidate, Candidates, Cause, Certificate, OptionsError, PixelSum, SelectReport};
 use crate::knapsack::{Crowd, OddClass, Outcome, ProfileItem, SharedClass, SharedKnapsack};
@@ -10,6 +11,9 @@ use crate::table::Level;
 /// Options of [`Predictive`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PredictiveOptions {
+    /// Shows the optimum only where and when that is worth switching. Then the optimum is one without prices and dead
+    /// band, and the options below have no effect.
+    pub steadiness: Option<Steadiness>,
     /// Price of a switch: a better level is taken when it is worth 1/(1 − hysteresis) of the going rate, and given up
     /// when it is worth less than 1/(1 + hysteresis) of it. In 0…1, exclusive. Higher switches less and spends less well.
     pub hysteresis: f32,
@@ -24,7 +28,7 @@ pub struct PredictiveOptions {
 
 impl Default for PredictiveOptions {
     fn default() -> Self {
-        Self { hysteresis: 0.2, dwell_ms: 500, dwell: 0.7, ease: 0.01 }
+        Self { steadiness: None, hysteresis: 0.2, dwell_ms: 500, dwell: 0.7, ease: 0.01 }
     }
 }
 
@@ -34,6 +38,7 @@ impl PredictiveOptions {
     /// # Errors
     /// Names the option that is out of its range.
     pub fn check(&self) -> Result<(), OptionsError> {
+        self.steadiness.map_or(Ok(()), |steadiness| steadiness.check())?;
         let price = |x: f32| (0.0..1.0).contains(&x);
         OptionsError::unless(price(self.hysteresis), "hysteresis", "must be at least 0 and below 1")?;
         let dwell = price(self.dwell) && self.dwell >= self.hysteresis;
@@ -41,8 +46,13 @@ impl PredictiveOptions {
         OptionsError::unless((0.0..1.0).contains(&self.ease), "ease", "must be at least 0 and below 1")
     }
 
+    fn dead_band(&self) -> f64 {
+        self.steadiness.map_or(self.ease, |steadiness| steadiness.spare)
+    }
+
     fn price(&self, previous: Option<Level>, age_ms: u32) -> f32 {
         match previous {
+            _ if self.steadiness.is_some() => 0.0,
             None => 0.0,
             Some(_) if age_ms < self.dwell_ms => self.dwell,
             Some(_) => self.hysteresis,
@@ -59,6 +69,9 @@ pub struct Predictive {
     hulls: Hulls,
     /// Candidates whose class is not simply that of a level of their table.
     odd: Vec<OddClass>,
+    accounts: Accounts,
+    /// Candidates that are held coarser than the optimum, ascending.
+    owed: Vec<u32>,
     /// λ of the last frame in px² per µs.
     lambda: f64,
     /// See [`FALL`].
@@ -140,21 +153,34 @@ impl Predictive {
         }
     }
 
+    /// The optimum up to `budget` in `levels`, the dead band being above `ease`. Under steadiness `levels` are led there
+    /// instead, and the outcome has their cost and benefit.
     fn solve(&mut self, frame: &Frame<'_>, budget: u64, ease: u64, levels: &mut [Level]) -> Outcome {
         let Candidates { weight, place, census, previous, age_ms, .. } = frame.candidates;
         let stay = |i: usize| self.options.price(previous[i], age_ms[i]);
         let crowd = Crowd { weight, place, census, odd: &self.odd, stay };
-        let outcome = self.knapsack.solve_crowd(&crowd, budget, ease, |i| frame.key(i));
-        for (i, item) in self.knapsack.changed() {
-            levels[i] = Level(item);
-        }
-        outcome
+        let Some(steadiness) = &self.options.steadiness else {
+            let outcome = self.knapsack.solve_crowd(&crowd, budget, ease, |i| frame.key(i));
+            self.knapsack.changed().for_each(|(i, item)| levels[i] = Level(item));
+            return outcome;
+        };
+        let outcome = self.knapsack.solve_crowd(&crowd, budget, budget, |i| frame.key(i));
+        open_accounts(&mut self.accounts, &self.knapsack, &crowd, frame, levels);
+        let Outcome { lambda, cost, benefit, minimum_benefit, .. } = outcome;
+        let (gain, objects) = (benefit - minimum_benefit, levels.len());
+        let optimum = Optimum { gain, objects, lambda, cost, budget, enough: ease };
+        let cost = self.accounts.settle(steadiness, &optimum);
+        self.accounts.settled.iter().for_each(|&(i, level)| levels[i as usize] = level);
+        self.owed.clear();
+        self.owed.extend(self.accounts.debts.iter().map(|debt| debt.candidate));
+        self.owed.sort_unstable();
+        Outcome { cost, benefit: self.accounts.benefit(benefit), ..outcome }
     }
 
     fn report(&self, frame: &Frame<'_>, outcome: &Outcome, fixed: u64, over: u64) -> SelectReport {
         let us_per_tick = 1.0 / self.hulls.ticks_per_us;
         let certificate = Certificate {
-            upper_bound: outcome.upper_bound,
+            upper_bound: outcome.upper_bound.max(outcome.benefit),
             gap: outcome.gap(),
             penalised_gap: outcome.priced_gap(),
             lambda: self.lambda,
@@ -189,7 +215,7 @@ impl Selector for Predictive {
         let fixed = self.fill_odd(frame);
         let budget = (frame.budget.select_us.max(0.0) * self.hulls.ticks_per_us) as u64;
         let over = fixed.saturating_sub(budget);
-        let ease = (budget as f64 * (1.0 - self.options.ease)) as u64;
+        let ease = (budget as f64 * (1.0 - self.options.dead_band())) as u64;
         let free = |ticks: u64| ticks.saturating_sub(fixed);
         let outcome = self.solve(frame, free(budget), free(ease), levels);
         self.knapsack.profiles.truncate(self.hulls.shared_count as usize);
@@ -204,8 +230,21 @@ impl Selector for Predictive {
         self.fall * self.lambda / (1.0 + f64::from(self.options.hysteresis))
     }
 
-    /// Held back by the price of switching where the next finer level is worth the going rate without it.
+    /// Held back by steadiness where the optimum is finer, and by the price of switching where the next finer level is worth the going rate without it.
     fn cause(&self, frame: &Frame<'_>, i: usize, level: Level) -> Cause {
+        if let Some(steadiness) = self.options.steadiness {
+            let is_full = steadiness.is_full(frame.candidates.account_of(i));
+            return match self.owed.binary_search(&(i as u32)) {
+                Ok(_) => {
+                    if is_full {
+                        Cause::Dwell
+                    } else {
+                        Cause::Hysteresis
+                    }
+                }
+                Err(_) => Cause::Budget,
+            };
+        }
         let (candidates, candidate) = (frame.candidates, frame.candidate(i));
         let finer = frame.rates.drawn(candidate.table, candidate.allowed).filter(|&(l, _)| l < level);
         let lambda = self.lambda;
@@ -221,13 +260,45 @@ impl Selector for Predictive {
         }
     }
 
+    fn owed(&self) -> Option<&[u32]> {
+        self.options.steadiness.map(|_| self.owed.as_slice())
+    }
+
     fn reset(&mut self) {
         self.knapsack.forget();
         (self.lambda, self.fall) = (0.0, 0.0);
+        self.owed.clear();
     }
 
     fn boxed_clone(&self) -> Box<dyn Selector> {
         Box::new(self.clone())
+    }
+}
+
+/// Opens the account of every candidate that does not hold the level the knapsack has for it. Who has just come into view,
+/// and whose level is allowed no longer, takes it at once.
+fn open_accounts<F: Fn(usize) -> f32>(
+    accounts: &mut Accounts,
+    knapsack: &SharedKnapsack,
+    crowd: &Crowd<'_, F>,
+    frame: &Frame<'_>,
+    levels: &mut [Level],
+) {
+    accounts.clear();
+    for (i, item) in knapsack.changed() {
+        let best = Level(item);
+        let previous = frame.candidates.previous[i].filter(|&held| held != best);
+        let class = previous.map(|held| (held, crowd.class(&knapsack.profiles, i)));
+        let offers = class.and_then(|(held, class)| {
+            let offer = |level: Level| knapsack.profiles.offer(&class, level.0);
+            Some([offer(held)?, offer(best)?])
+        });
+        match offers {
+            Some(offers) => {
+                accounts.open((i as u32, frame.key(i)), best, offers, frame.candidates.account_of(i));
+            }
+            None => levels[i] = best,
+        }
     }
 }
 

@@ -213,7 +213,8 @@ const REVERSAL_S: f64 = 1.0;
 
 impl<'a> Judge<'a> {
     fn new(machine: &'a Machine, bounds: Bounds) -> Result<Self, OptionsError> {
-        let free = PredictiveOptions { hysteresis: 0.0, dwell_ms: 0, dwell: 0.0, ease: 0.0 };
+        let free =
+            PredictiveOptions { steadiness: None, hysteresis: 0.0, dwell_ms: 0, dwell: 0.0, ease: 0.0 };
         Ok(Self {
             machine,
             bounds,

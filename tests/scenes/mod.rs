@@ -9,8 +9,8 @@ use lod_budget::rate::{BenefitModel, CostModel, Stages};
 use lod_budget::runtime::{RuntimeOptions, ViewInput};
 use lod_budget::scene::{LevelRange, Object, ObjectId, Objects, Settings, TableId};
 use lod_budget::select::{
-    Coarsest, Finest, FunkhouserSequin, Measure, Predictive, Reactive, ScreenSize, ScreenSizeOptions,
-    Selector,
+    Coarsest, Finest, FunkhouserSequin, Measure, Predictive, PredictiveOptions, Reactive, ScreenSize,
+    ScreenSizeOptions, Selector, Steadiness,
 };
 use lod_budget::table::{Level, LevelRecord, LodTable};
 use lod_budget::transition::{TransitionKind, TransitionOptions};
@@ -27,9 +27,10 @@ pub enum Policy {
     Reactive,
     FunkhouserSequin,
     Predictive,
+    Steady,
 }
 
-pub const POLICIES: [Policy; 7] = [
+pub const POLICIES: [Policy; 8] = [
     Policy::Finest,
     Policy::Coarsest,
     Policy::ErrorPx,
@@ -37,6 +38,7 @@ pub const POLICIES: [Policy; 7] = [
     Policy::Reactive,
     Policy::FunkhouserSequin,
     Policy::Predictive,
+    Policy::Steady,
 ];
 
 impl Policy {
@@ -49,12 +51,21 @@ impl Policy {
             Self::Reactive => Box::new(Reactive::new(Default::default()).expect("defaults are good")),
             Self::FunkhouserSequin => Box::new(FunkhouserSequin::default()),
             Self::Predictive => Box::new(Predictive::default()),
+            Self::Steady => Box::new(steady()),
         }
     }
 
     pub fn promise(self) -> Promise {
-        if self == Self::Predictive { Promise::Budget } else { Promise::Levels }
+        match self {
+            Self::Predictive | Self::Steady => Promise::Budget,
+            _ => Promise::Levels,
+        }
     }
+}
+
+fn steady() -> Predictive {
+    let steadiness = Some(Steadiness::default());
+    Predictive::new(PredictiveOptions { steadiness, ..Default::default() }).expect("good options")
 }
 
 fn screen_size(measure: Measure) -> ScreenSize {

@@ -39,6 +39,14 @@ impl<F: Fn(usize) -> f32> Crowd<'_, F> {
         (self.place[i] as usize) < self.census.len()
     }
 
+    /// A class in full.
+    pub fn class(&self, profiles: &Profiles, i: usize) -> SharedClass {
+        match self.holds_item(i) {
+            true => self.holder(profiles, i),
+            false => self.odd[self.odd.partition_point(|odd| (odd.at as usize) < i)].class,
+        }
+    }
+
     /// A class that holds an item.
     fn holder(&self, profiles: &Profiles, i: usize) -> SharedClass {
         profiles.class_at(self.place[i], self.weight[i], (self.stay)(i))

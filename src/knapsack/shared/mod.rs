@@ -21,7 +21,7 @@ mod sift;
 
 pub use certificate::Outcome;
 pub use crowd::{Crowd, OddClass};
-pub use profiles::{Position, ProfileItem, Profiles};
+pub use profiles::{Offer, Position, ProfileItem, Profiles};
 pub(crate) use sift::{Hold, Units, sift};
 
 use certificate::Sums;

@@ -4,6 +4,7 @@
 //! set of *profiles*, the hull of the class is the hull of its profile whatever weight and scale are. It is made once.
 
 use super::SharedClass;
+use super::class::scaled;
 use super::sift::Hold;
 use crate::knapsack::{Item, upper_hull};
 
@@ -34,6 +35,15 @@ pub struct ProfileItem {
     pub ticks: u64,
     /// The caller's code for it.
     pub item: u8,
+}
+
+/// What a class costs and is worth with one of its items.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Offer {
+    /// Cost, the scale included.
+    pub ticks: u64,
+    /// Benefit, the weight included.
+    pub benefit: f64,
 }
 
 /// A set of profiles, by number.
@@ -143,6 +153,13 @@ impl Profiles {
     pub fn items(&self, profile: u32) -> &[ProfileItem] {
         let (start, end) = self.spans[profile as usize].items;
         &self.items[start as usize..end as usize]
+    }
+
+    /// What a class costs and is worth with `item`; `None` when its profile was not made of it. O(items).
+    pub fn offer(&self, class: &SharedClass, item: u8) -> Option<Offer> {
+        let found = self.items(class.profile).iter().find(|i| i.item == item)?;
+        let benefit = f64::from(class.weight) * f64::from(found.value);
+        Some(Offer { ticks: scaled(found.ticks, class.scale), benefit })
     }
 
     /// The position that holds `item`, or else the costliest one that costs no more than it; the cheapest for an item
