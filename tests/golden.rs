@@ -8,7 +8,9 @@
 use glam::Vec2;
 use lod_budget::frame::{FrameTime, GroupId};
 use lod_budget::runtime::{FrameInput, Runtime, RuntimeOptions, ViewInput};
-use lod_budget::select::{FunkhouserSequin, Predictive, Reactive, ReactiveOptions, ScreenSize, Selector};
+use lod_budget::select::{
+    FunkhouserSequin, Predictive, PredictiveOptions, Reactive, ReactiveOptions, ScreenSize, Selector,
+};
 use lod_budget::sim::generate::Recipe;
 use lod_budget::view::{Projection, View, Window};
 
@@ -52,12 +54,14 @@ fn decisions(recipe: Recipe, selector: Box<dyn Selector>, budget_us: f64) -> u64
     hash
 }
 
-fn policies() -> [(&'static str, Box<dyn Selector>); 4] {
+fn policies() -> [(&'static str, Box<dyn Selector>); 5] {
+    let priced = Predictive::new(PredictiveOptions { steadiness: None, ..Default::default() });
     let reactive = Reactive::new(ReactiveOptions::default()).expect("good defaults");
     [
         ("static", Box::new(ScreenSize::default())),
         ("reactive", Box::new(reactive)),
         ("funkhouser-sequin", Box::new(FunkhouserSequin::default())),
+        ("predictive, priced", Box::new(priced.expect("good options"))),
         ("predictive", Box::new(Predictive::default())),
     ]
 }
@@ -75,17 +79,20 @@ fn decisions_along_the_bundled_paths_are_the_golden_ones() {
     assert_eq!(found, GOLDEN, "found {found:#x?}");
 }
 
-const GOLDEN: [(&str, &str, u64); 12] = [
+const GOLDEN: [(&str, &str, u64); 15] = [
     ("building", "static", 0x2f590871b89f91c5),
     ("building", "reactive", 0x051719a321cf9007),
     ("building", "funkhouser-sequin", 0x47cb243574b2ac77),
-    ("building", "predictive", 0x7ef98b24939046d4),
+    ("building", "predictive, priced", 0x7ef98b24939046d4),
+    ("building", "predictive", 0x51ec1be395e6d7eb),
     ("city", "static", 0x907a2b16fb0bc664),
     ("city", "reactive", 0x560cd49e8b7dc391),
     ("city", "funkhouser-sequin", 0xdce214cfc99ae577),
-    ("city", "predictive", 0x34355eead36659ef),
+    ("city", "predictive, priced", 0x34355eead36659ef),
+    ("city", "predictive", 0x25339be9b1558084),
     ("forest", "static", 0x78e69e7156fa279f),
     ("forest", "reactive", 0xcea1ec3019e316c3),
     ("forest", "funkhouser-sequin", 0xd61b4bc65fcc1ffb),
-    ("forest", "predictive", 0xbc8895dc4ab060d8),
+    ("forest", "predictive, priced", 0xbc8895dc4ab060d8),
+    ("forest", "predictive", 0x287a2bd12bdd9d81),
 ];

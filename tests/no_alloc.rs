@@ -13,7 +13,6 @@ use lod_budget::runtime::{FrameInput, Runtime, RuntimeOptions, ViewInput};
 use lod_budget::scene::{LevelRange, Object, Objects, Settings};
 use lod_budget::select::{
     Coarsest, Finest, FunkhouserSequin, Predictive, PredictiveOptions, Reactive, ScreenSize, Selector,
-    Steadiness,
 };
 use lod_budget::table::{LevelRecord, LodTable};
 use lod_budget::transition::{TransitionKind, TransitionOptions};
@@ -100,7 +99,7 @@ fn fly(runtime: &mut Runtime, objects: &mut Objects, budget_us: f64) -> usize {
 }
 
 fn selectors() -> [Box<dyn Selector>; 7] {
-    let steady = PredictiveOptions { steadiness: Some(Steadiness::default()), ..Default::default() };
+    let priced = PredictiveOptions { steadiness: None, ..Default::default() };
     [
         Box::new(Finest),
         Box::new(Coarsest),
@@ -108,7 +107,7 @@ fn selectors() -> [Box<dyn Selector>; 7] {
         Box::new(Reactive::new(Default::default()).expect("defaults are good")),
         Box::new(FunkhouserSequin::default()),
         Box::new(Predictive::default()),
-        Box::new(Predictive::new(steady).expect("good options")),
+        Box::new(Predictive::new(priced).expect("good options")),
     ]
 }
 

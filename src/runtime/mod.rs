@@ -103,6 +103,8 @@ pub struct Runtime {
     tree: BlockTree,
     rates: TableRates,
     rated: Option<Rated>,
+    /// Whether some objects may be left out, at this revision of them.
+    skippable: (u64, bool),
     layout: Layout,
     groups: Vec<GroupMemory>,
     clock_ms: f64,
@@ -152,6 +154,7 @@ impl Runtime {
             tree: BlockTree::default(),
             rates: TableRates::default(),
             rated: None,
+            skippable: (0, false),
             layout: Layout::default(),
             groups: Vec::new(),
             clock_ms: 0.0,
@@ -224,6 +227,7 @@ impl Runtime {
         self.feedback.reset(self.options.cost);
         self.tree = BlockTree::default();
         self.rated = None;
+        self.skippable = (0, false);
         self.layout = Layout::default();
         self.groups.clear();
         self.clock_ms = 0.0;
@@ -241,7 +245,7 @@ impl Runtime {
     fn begin(&mut self, objects: &mut Objects, input: &FrameInput<'_>) {
         let frame = FrameId(self.report.frame.0 + 1);
         let broken_bounds = objects.broken_bounds();
-        let floor = self.selector.floor();
+        let floor = if self.some_may_be_left_out(objects) { self.selector.floor() } else { 0.0 };
         self.report = FrameReport { frame, broken_bounds, floor, ..FrameReport::default() };
         self.changes.clear();
         self.clock_ms += elapsed_ms(input.dt_s);
@@ -254,6 +258,15 @@ impl Runtime {
             self.tree.expect_slopes(self.rates.best_slopes());
             self.rated = Some(rated);
         }
+    }
+
+    /// Whether the selection may leave out any object.
+    fn some_may_be_left_out(&mut self, objects: &Objects) -> bool {
+        let revision = objects.revision();
+        if self.skippable.0 != revision {
+            self.skippable = (revision, objects.blocks().iter().any(|b| b.skippable & b.live != 0));
+        }
+        self.skippable.1
     }
 
     /// Culls every view and rates what each group sees.

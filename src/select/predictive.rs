@@ -28,7 +28,13 @@ pub struct PredictiveOptions {
 
 impl Default for PredictiveOptions {
     fn default() -> Self {
-        Self { steadiness: None, hysteresis: 0.2, dwell_ms: 500, dwell: 0.7, ease: 0.01 }
+        Self {
+            steadiness: Some(Steadiness::default()),
+            hysteresis: 0.2,
+            dwell_ms: 500,
+            dwell: 0.7,
+            ease: 0.01,
+        }
     }
 }
 

@@ -47,7 +47,7 @@ const FIRST_MS: f64 = 16.0;
 
 impl Default for Steadiness {
     fn default() -> Self {
-        Self { patience_s: 0.05, longest_ms: 1000, content: 0.002, spare: 0.05, burst: 4 }
+        Self { patience_s: 0.05, longest_ms: 1000, content: 0.002, spare: 0.03, burst: 4 }
     }
 }
 

@@ -10,7 +10,7 @@ use lod_budget::runtime::{RuntimeOptions, ViewInput};
 use lod_budget::scene::{LevelRange, Object, ObjectId, Objects, Settings, TableId};
 use lod_budget::select::{
     Coarsest, Finest, FunkhouserSequin, Measure, Predictive, PredictiveOptions, Reactive, ScreenSize,
-    ScreenSizeOptions, Selector, Steadiness,
+    ScreenSizeOptions, Selector,
 };
 use lod_budget::table::{Level, LevelRecord, LodTable};
 use lod_budget::transition::{TransitionKind, TransitionOptions};
@@ -50,8 +50,8 @@ impl Policy {
             Self::Authored => Box::new(screen_size(Measure::Authored { error_px: 2.0 })),
             Self::Reactive => Box::new(Reactive::new(Default::default()).expect("defaults are good")),
             Self::FunkhouserSequin => Box::new(FunkhouserSequin::default()),
-            Self::Predictive => Box::new(Predictive::default()),
-            Self::Steady => Box::new(steady()),
+            Self::Predictive => Box::new(priced()),
+            Self::Steady => Box::new(Predictive::default()),
         }
     }
 
@@ -63,9 +63,9 @@ impl Policy {
     }
 }
 
-fn steady() -> Predictive {
-    let steadiness = Some(Steadiness::default());
-    Predictive::new(PredictiveOptions { steadiness, ..Default::default() }).expect("good options")
+/// Hysteresis as a price inside the objective.
+fn priced() -> Predictive {
+    Predictive::new(PredictiveOptions { steadiness: None, ..Default::default() }).expect("good options")
 }
 
 fn screen_size(measure: Measure) -> ScreenSize {
