@@ -93,7 +93,7 @@ pub enum Policy {
     Predictive,
     /// The same, with what it remembers of earlier frames (its λ) forgotten before each.
     Forgetful,
-    /// Budgeted, with the default prices of switching.
+    /// Budgeted, with the default options of switching.
     Priced,
     /// By size on the screen alone.
     Static,
@@ -106,7 +106,7 @@ impl Policy {
         match self {
             Self::Predictive => "predictive",
             Self::Forgetful => "predictive without memory",
-            Self::Priced => "predictive, default prices",
+            Self::Priced => "predictive, default options",
             Self::Static => "static",
             Self::SlowerStage { .. } => "predictive, max(geometry, pixels)",
         }
