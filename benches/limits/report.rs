@@ -266,7 +266,7 @@ what is in view can cost.
 **What a row includes.** `warm_*`, `cold_*`, `frame_*`, `general_*` and `growth_*` time a whole
 `Runtime::frame`: the look for changes, culling, rating, selection with its certificate, hard transitions, the
 list of changes, and the prediction of the frame's time; nothing is subtracted. The policy is `Predictive` with
-switches free of charge, which is the textbook's objective; the default options are under *More*. The baselines
+switches free of charge, which is the textbook's objective; the default options (steadiness) are under *More*. The baselines
 go from spheres to a level for each object and leave the rest out. `cull*` time `BlockTree::cull`, which lists
 blocks with a mask each; a list of indices is what the box query makes. `cold_vs_stream` wipes the policy's
 memory (its λ), not the runtime's of what was shown; a whole teleport, every object coming into view in one
