@@ -10,7 +10,7 @@ use lod_budget::bounds::Sphere;
 use lod_budget::frame::{FrameTime, GroupId};
 use lod_budget::rate::{CostModel, Stages};
 use lod_budget::runtime::{FrameInput, Runtime, RuntimeOptions, ViewInput};
-use lod_budget::scene::{LevelRange, Object, Objects, Settings};
+use lod_budget::scene::{LevelRange, Object, ObjectId, Objects, Settings};
 use lod_budget::select::{
     Coarsest, Finest, FunkhouserSequin, Predictive, PredictiveOptions, Reactive, ScreenSize, Selector,
 };
@@ -98,6 +98,34 @@ fn fly(runtime: &mut Runtime, objects: &mut Objects, budget_us: f64) -> usize {
     changes
 }
 
+/// A world in motion: every frame some objects move, one goes and comes back elsewhere, and now and then the camera jumps.
+fn stir(objects: &mut Objects, n: usize) {
+    for k in 0..20 {
+        let id = ObjectId((n * 7 + k * 31) as u64 % OBJECTS);
+        let object = objects.get(id).expect("it is there");
+        let step = Vec3::new((k % 3) as f32 - 1.0, 0.0, (n % 3) as f32 - 1.0);
+        let center = (object.bounds.center + step).clamp(Vec3::splat(-48.0), Vec3::splat(48.0));
+        objects.set_bounds(id, Sphere { center, ..object.bounds }).expect("it is there");
+    }
+    let gone = objects.remove(ObjectId(n as u64 * 13 % OBJECTS)).expect("it is there");
+    let center = Vec3::new(-gone.bounds.center.z, gone.bounds.center.y, gone.bounds.center.x);
+    objects.insert(Object { bounds: Sphere { center, ..gone.bounds }, ..gone }).expect("the id is free");
+}
+
+/// A thousand frames of that.
+fn stir_and_fly(runtime: &mut Runtime, objects: &mut Objects) -> usize {
+    let mut changes = 0;
+    for n in 0..1000 {
+        stir(objects, n);
+        let report = runtime.report();
+        let measured = [FrameTime::busy(report.frame, report.predicted_us as f32)];
+        let views = views(if n % 100 < 50 { n } else { n + 150 });
+        runtime.frame(objects, &FrameInput { measured: &measured, ..FrameInput::new(&views, 2000.0) });
+        changes += runtime.changes().len();
+    }
+    changes
+}
+
 fn selectors() -> [Box<dyn Selector>; 7] {
     let priced = PredictiveOptions { steadiness: None, ..Default::default() };
     [
@@ -113,6 +141,17 @@ fn selectors() -> [Box<dyn Selector>; 7] {
 
 #[test]
 fn a_warm_frame_allocates_nothing() {
+    for (policy, selector) in selectors().into_iter().enumerate() {
+        let mut runtime = Runtime::new(RuntimeOptions::default(), selector).expect("good options");
+        let mut objects = crowd();
+        stir_and_fly(&mut runtime, &mut objects);
+        stir_and_fly(&mut runtime, &mut objects);
+        let before = ALLOCATIONS.load(Ordering::Relaxed);
+        let changes = stir_and_fly(&mut runtime, &mut objects);
+        let allocations = ALLOCATIONS.load(Ordering::Relaxed) - before;
+        assert_eq!(allocations, 0, "policy {policy}, in a world in motion");
+        assert!(changes > 0, "there is something to do");
+    }
     let kinds = [TransitionKind::Hard, TransitionKind::CrossFade, TransitionKind::Geomorph];
     for (kind, stages) in kinds.into_iter().zip([Stages::Sum, Stages::Sum, Stages::Max]) {
         for (policy, selector) in selectors().into_iter().enumerate() {

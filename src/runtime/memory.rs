@@ -96,6 +96,8 @@ pub(super) struct GroupMemory {
     before: Vec<Row>,
     /// How many objects in view were in view in the frame before.
     stayed: u32,
+    /// Where states wait while they are carried to other slots; empty between frames.
+    moving: Vec<(ObjectId, Moved)>,
 }
 
 /// The memory of a group, made when first asked for.
@@ -139,6 +141,7 @@ impl GroupMemory {
             rows: Vec::new(),
             before: Vec::new(),
             stayed: 0,
+            moving: Vec::new(),
         }
     }
 
@@ -326,12 +329,12 @@ impl GroupMemory {
         revision: u64,
         changes: &mut Vec<Change>,
     ) {
-        let moved = self.take_moved(objects, tenants, revision);
+        self.take_moved(objects, tenants, revision);
         self.blocks.resize(objects.blocks().len(), BlockMemory::EMPTY);
         if !self.accounts.is_empty() {
             self.keep_accounts();
         }
-        for (id, state) in moved {
+        while let Some((id, state)) = self.moving.pop() {
             match objects.slot_of(id) {
                 Some(slot) => self.put(slot, state),
                 None => self.leave(id, state.shown.level, changes),
@@ -350,14 +353,8 @@ impl GroupMemory {
         self.unsteady.sort_unstable_by_key(|u| u.slot);
     }
 
-    /// Forgets the objects in view whose slots have new tenants, and returns what was remembered of them.
-    fn take_moved(
-        &mut self,
-        objects: &Objects,
-        tenants: &[Option<ObjectId>],
-        revision: u64,
-    ) -> Vec<(ObjectId, Moved)> {
-        let mut moved = Vec::new();
+    /// Forgets the objects in view whose slots have new tenants, and puts aside what was remembered of them.
+    fn take_moved(&mut self, objects: &Objects, tenants: &[Option<ObjectId>], revision: u64) {
         let changed =
             |block: u32| objects.block_layout_revisions().get(block as usize).is_none_or(|&r| r > revision);
         for at in (0..self.rows.len()).filter(|&at| changed(self.rows[at].block)) {
@@ -372,7 +369,7 @@ impl GroupMemory {
                 let accounts = self.accounts.get(row.block as usize);
                 let account = accounts.map(|accounts| accounts.get(lane, self.frame)).unwrap_or_default();
                 let (wanted, since_ms) = (memory.wanted[lane], memory.since_ms[lane]);
-                moved.push((id, Moved { wanted, since_ms, shown, account }));
+                self.moving.push((id, Moved { wanted, since_ms, shown, account }));
                 memory.seen &= !(1 << lane);
                 memory.unsteady &= !(1 << lane);
             }
@@ -380,7 +377,6 @@ impl GroupMemory {
         let blocks = &self.blocks;
         self.unsteady
             .retain(|u| blocks[u.slot as usize / BLOCK].unsteady & (1 << (u.slot as usize % BLOCK)) != 0);
-        moved
     }
 
     /// Remembers an object in its new slot.
@@ -403,7 +399,7 @@ impl GroupMemory {
 }
 
 /// What is remembered of an object on its way to another slot.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Moved {
     wanted: Level,
     since_ms: u32,

@@ -171,6 +171,7 @@ impl Predictive {
             return outcome;
         };
         let outcome = self.knapsack.solve_crowd(&crowd, budget, budget, |i| frame.key(i));
+        self.accounts.make_room(levels.len());
         open_accounts(&mut self.accounts, &self.knapsack, &crowd, frame, levels);
         let Outcome { lambda, cost, benefit, minimum_benefit, .. } = outcome;
         let (gain, objects) = (benefit - minimum_benefit, levels.len());
@@ -236,18 +237,14 @@ impl Selector for Predictive {
         self.fall * self.lambda / (1.0 + f64::from(self.options.hysteresis))
     }
 
-    /// Held back by steadiness where the optimum is finer, and by the price of switching where the next finer level is worth the going rate without it.
+    /// Held back by steadiness where the optimum is finer, or by the price of switching where the next finer level is worth
+    /// the going rate without it.
     fn cause(&self, frame: &Frame<'_>, i: usize, level: Level) -> Cause {
         if let Some(steadiness) = self.options.steadiness {
             let is_full = steadiness.is_full(frame.candidates.account_of(i));
             return match self.owed.binary_search(&(i as u32)) {
-                Ok(_) => {
-                    if is_full {
-                        Cause::Dwell
-                    } else {
-                        Cause::Hysteresis
-                    }
-                }
+                Ok(_) if is_full => Cause::Dwell,
+                Ok(_) => Cause::Hysteresis,
                 Err(_) => Cause::Budget,
             };
         }

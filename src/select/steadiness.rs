@@ -154,6 +154,14 @@ impl Accounts {
         self.settled.clear();
     }
 
+    /// Makes room for an account for each of so many candidates, so that a frame with more of them than any before
+    /// allocates nothing.
+    pub fn make_room(&mut self, candidates: usize) {
+        self.debts.reserve(candidates.saturating_sub(self.debts.len()));
+        self.credits.reserve(candidates.saturating_sub(self.credits.len()));
+        self.settled.reserve(candidates.saturating_sub(self.settled.len()));
+    }
+
     /// Opens the account of a candidate whose optimum is another level than it holds. Where the optimum's is better at
     /// no more cost, or cheaper at no less benefit, it is settled without more ado.
     pub fn open(

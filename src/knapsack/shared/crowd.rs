@@ -180,6 +180,10 @@ impl Aside {
     }
 }
 
+fn make_room<T>(list: &mut Vec<T>, len: usize) {
+    list.reserve(len.saturating_sub(list.len()));
+}
+
 /// Brackets that are tried before the classes are listed one and all.
 const TRIES: usize = 6;
 
@@ -305,9 +309,22 @@ impl SharedKnapsack {
         [(low * 0.98).max(f32::MIN_POSITIVE), high * 1.02]
     }
 
+    /// Makes room for as many classes to be looked at closely as there are, so that a frame with more of them than any
+    /// before allocates nothing. None of it is touched until it is used.
+    fn make_room(&mut self, classes: usize) {
+        let Self { aside, .. } = self;
+        [&mut aside.moved, &mut aside.hovering].into_iter().for_each(|list| make_room(list, classes));
+        [&mut self.opened, &mut self.owners].into_iter().for_each(|list| make_room(list, classes));
+        [&mut self.choice, &mut self.chosen].into_iter().for_each(|list| make_room(list, classes));
+        make_room(&mut self.classes, classes);
+        make_room(&mut self.blocked, classes);
+        make_room(&mut self.undecided, classes);
+    }
+
     /// Sets aside what is settled or decided for every λ of the bracket, lists the rest, and surveys it.
     fn sift<F: Fn(usize) -> f32>(&mut self, crowd: &Crowd<'_, F>, bracket: [f32; 2]) -> Survey {
         let [low, high] = bracket;
+        self.make_room(crowd.weight.len());
         let Self { profiles, classes, owners, aside, opened, .. } = self;
         classes.clear();
         owners.clear();
