@@ -67,7 +67,8 @@ impl PredictiveOptions {
 }
 
 /// Maximises benefit under the budget, with a certificate: after Funkhouser and Séquin 1993 in what it maximises, not
-/// in how. Switching prices are part of the objective, so that hysteresis never breaks the budget.
+/// in how. What keeps levels from flickering, accounts of what objects are owed ([`Steadiness`]) or prices of switching
+/// inside the objective, never breaks the budget.
 #[derive(Clone, Debug, Default)]
 pub struct Predictive {
     options: PredictiveOptions,
