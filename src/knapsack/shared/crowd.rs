@@ -142,13 +142,45 @@ impl Aside {
         self.marked[i / 64] & (1 << (i % 64)) != 0
     }
 
+    /// Everyone who holds an item, as if settled, but for what they are worth.
+    fn begin<F>(&mut self, profiles: &Profiles, crowd: &Crowd<'_, F>) {
+        self.clear();
+        self.marked.clear();
+        self.marked.resize(crowd.weight.len().div_ceil(64), 0);
+        for (item, &count) in crowd.census.iter().enumerate().filter(|&(_, &count)| count > 0) {
+            let [_, held, _] = profiles.item_ticks(item);
+            self.classes += u64::from(count);
+            self.cost = self.cost.saturating_add(held.saturating_mul(u64::from(count)));
+        }
+    }
+
+    /// Takes out a class that holds an item and is not settled.
+    fn dismiss(&mut self, class: &Class<'_>) {
+        self.classes -= 1;
+        self.cost = self.cost.saturating_sub(class.cost(class.held()));
+    }
+
+    /// Sets a class aside that goes to its position for every λ of the bracket. `held` is the code of the item it holds.
+    fn decide(&mut self, decided: Decided, class: &Class<'_>, held: Option<u8>, [low, high]: [f32; 2]) {
+        let position = decided.position;
+        self.add(class, position);
+        // A held item that is no corner of its hull is not held on.
+        if held != Some(class.positions[usize::from(position)].item) {
+            self.mark(decided.at as usize);
+            self.moved.push(decided);
+        }
+        if class.plain_slope(position) >= low || position > 0 && class.plain_slope(position - 1) < high {
+            self.hovering.push(decided);
+        }
+    }
+
     /// Sets a class aside that goes to `position`.
     fn add(&mut self, class: &Class<'_>, position: u8) {
         let value = |p: u8| self.benefit.of(class.weight, class.positions[usize::from(p)].value);
         let (here, least) = (value(position), value(0));
         self.benefit.value += here;
         self.benefit.least += least;
-        self.cost += class.cost(position);
+        self.cost = self.cost.saturating_add(class.cost(position));
         self.classes += 1;
     }
 
@@ -158,7 +190,7 @@ impl Aside {
         let (here, least) = (value(position), value(0));
         self.benefit.value -= here;
         self.benefit.least -= least;
-        self.cost -= class.cost(position);
+        self.cost = self.cost.saturating_sub(class.cost(position));
         self.classes -= 1;
     }
 
@@ -329,13 +361,7 @@ impl SharedKnapsack {
         classes.clear();
         owners.clear();
         opened.clear();
-        aside.clear();
-        aside.marked.clear();
-        aside.marked.resize(crowd.weight.len().div_ceil(64), 0);
-        for (item, &count) in crowd.census.iter().enumerate() {
-            aside.classes += u64::from(count);
-            aside.cost += profiles.item_ticks(item)[1] * u64::from(count);
-        }
+        aside.begin(profiles, crowd);
         let holds = profiles.holds();
         let open = |i: usize| opened.push(i as u32);
         aside.benefit = sift(crowd.weight, crowd.weight, crowd.place, holds, bracket, open);
@@ -344,27 +370,17 @@ impl SharedKnapsack {
             let shared = read(i as usize);
             let class = Class::new(profiles, &shared);
             let above = class.reach(class.held(), high);
-            let holds_item = crowd.holds_item(i as usize);
-            if holds_item {
-                aside.classes -= 1;
-                aside.cost -= class.cost(class.held());
+            let held = crowd.holds_item(i as usize).then(|| profiles.code(crowd.place[i as usize]));
+            if held.is_some() {
+                aside.dismiss(&class);
             }
-            if class.reach(above, low) != above {
+            if class.reach(above, low) == above {
+                let decided = Decided { at: i, class: shared, position: above, listed: false };
+                aside.decide(decided, &class, held, bracket);
+            } else {
                 classes.push(shared);
                 owners.push(i);
                 aside.mark(i as usize);
-                continue;
-            }
-            aside.add(&class, above);
-            let decided = Decided { at: i, class: shared, position: above, listed: false };
-            // A held item that is no corner of its hull is not held on.
-            let item = class.positions[usize::from(above)].item;
-            if !holds_item || item != profiles.code(crowd.place[i as usize]) {
-                aside.mark(i as usize);
-                aside.moved.push(decided);
-            }
-            if class.plain_slope(above) >= low || above > 0 && class.plain_slope(above - 1) < high {
-                aside.hovering.push(decided);
             }
         }
         drop(read);
