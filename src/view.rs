@@ -319,8 +319,9 @@ impl Lens {
         let d = sphere.center - self.eye;
         let distance2 = (d.x * d.x + d.y * d.y + d.z * d.z).max(self.near * self.near);
         let distance2 = if self.perspective { distance2 } else { 1.0 };
-        let radius2 = sphere.radius * sphere.radius;
-        let area_px2 = (radius2 * self.unit_px2 / distance2).min(self.viewport_px2);
+        // Finite, so that what is infinitely far is infinitely small however large it is.
+        let radius2 = (sphere.radius * sphere.radius).min(f32::MAX);
+        let area_px2 = (radius2 / distance2 * self.unit_px2).min(self.viewport_px2);
         let inside = self.perspective & (distance2 <= radius2);
         if inside { self.viewport_px2 } else { area_px2 }
     }
@@ -432,6 +433,12 @@ mod tests {
         let lens = full_hd().lens(DVec3::ZERO);
         assert_eq!(lens.area_px2(&ball(0.0, 0.0, 0.5, 2.0)), 1920.0 * 1080.0);
         assert!(lens.unit_px(&ball(0.0, 0.0, 0.5, 2.0)).is_finite());
+    }
+
+    #[test]
+    fn what_is_infinitely_far_is_infinitely_small() {
+        let lens = full_hd().at(Vec3::splat(1e30), Quat::IDENTITY).lens(DVec3::ZERO);
+        assert_eq!(lens.area_px2(&ball(0.0, 0.0, 0.0, f32::MAX)), 0.0);
     }
 
     #[test]
