@@ -272,7 +272,8 @@ impl Runtime {
     /// Culls every view and rates what each group sees.
     fn find_candidates(&mut self, objects: &Objects, input: &FrameInput<'_>) {
         let views = input.views;
-        let in_detail = self.order_views(views);
+        self.order_views(views);
+        let in_detail = self.is_in_detail(views);
         self.scratch.candidates.clear(self.rates.len());
         let mut first = 0;
         while let Some(&view) = self.scratch.order.get(first) {
@@ -293,20 +294,23 @@ impl Runtime {
         self.report.candidates = self.scratch.candidates.len();
     }
 
-    /// Lists the views that can be used by group. Returns whether candidates have to be rated in detail: for a policy
-    /// that asks for it, and wherever details of one candidate could not be worked out from one view alone.
-    fn order_views(&mut self, views: &[ViewInput<'_>]) -> bool {
+    /// Lists the views that can be used, by group.
+    fn order_views(&mut self, views: &[ViewInput<'_>]) {
         let order = &mut self.scratch.order;
         order.clear();
         order.extend((0..views.len()).filter(|&i| views[i].view.check().is_ok()));
         order.sort_unstable_by_key(|&i| (views[i].group, i));
         self.report.broken_views = views.len() - order.len();
-        let several = order.windows(2).any(|pair| views[pair[0]].group == views[pair[1]].group);
-        let model = self.feedback.model();
+    }
+
+    /// Whether candidates have to be rated in detail: for a policy that asks for it, and wherever details of one candidate
+    /// could not be worked out from one view alone.
+    fn is_in_detail(&self, views: &[ViewInput<'_>]) -> bool {
+        let several = self.scratch.order.windows(2).any(|pair| views[pair[0]].group == views[pair[1]].group);
         self.selector.needs() == Needs::Details
             || several
             || self.options.benefit.enough_px > 0.0
-            || model.stages == Stages::Max
+            || self.feedback.model().stages == Stages::Max
     }
 
     /// Culls the views of one group, given by their places in [`Scratch::order`].

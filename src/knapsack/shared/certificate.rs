@@ -97,7 +97,7 @@ impl Worth {
 
 /// Slopes this close to λ, relatively, may be on its other side without the rounding of single precision: three roundings
 /// of 2⁻²⁴ each, doubled. There the best position is looked for in double precision.
-const NEAR: f32 = 4e-7;
+pub(super) const NEAR: f32 = 4e-7;
 
 impl Sums {
     /// None of these classes yet.
@@ -198,7 +198,7 @@ fn power_of_two(exponent: i32) -> f64 {
 }
 
 /// The position that maximises benefit − λ·cost, looked for from `near`.
-fn best(
+pub(super) fn best(
     class: &Class<'_>,
     near: u8,
     lambda: f32,

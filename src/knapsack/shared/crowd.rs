@@ -5,8 +5,8 @@
 //! Of the others most go to one position whatever λ is; they are decided, and set aside with the settled ones as sums. Only
 //! the rest are listed as classes, and solved as a list is. The answer is that of the list of all classes.
 
-use super::certificate::Sums;
-use super::class::{Class, reach};
+use super::certificate::{NEAR, Sums, best};
+use super::class::Class;
 use super::sift::{Units, sift};
 use super::{Critical, Outcome, Profiles, SharedClass, SharedKnapsack, Survey};
 
@@ -169,6 +169,8 @@ impl Aside {
             self.mark(decided.at as usize);
             self.moved.push(decided);
         }
+        // Slopes at the very ends of the bracket may be on their other sides without rounding.
+        let (low, high) = (low * (1.0 - NEAR), high * (1.0 + NEAR));
         if class.plain_slope(position) >= low || position > 0 && class.plain_slope(position - 1) < high {
             self.hovering.push(decided);
         }
@@ -204,7 +206,7 @@ impl Aside {
         (self.hover_value, self.hover_cost) = (0, 0);
         for Decided { class, position, .. } in self.hovering.iter().filter(|h| !h.listed) {
             let (class, position) = (Class::new(profiles, class), *position);
-            let best = reach(position, lambda, |p| class.plain_slope(p));
+            let best = best(&class, position, lambda, |p| class.plain_slope(p), |p| class.plain(p));
             let value = |p: u8| self.benefit.of(class.weight, class.positions[usize::from(p)].value);
             self.hover_value += value(best) - value(position);
             self.hover_cost += i128::from(class.cost(best)) - i128::from(class.cost(position));
