@@ -144,7 +144,7 @@ fn budget_us(frame: &Frame<'_>) -> f64 {
 }
 
 fn who(frame: &Frame<'_>, i: usize) -> (GroupId, ObjectId) {
-    let id = frame.objects.id_of(frame.candidates.slot[i] as usize).unwrap_or_default();
+    let id = frame.objects.id_of(frame.candidates.slot_of(i) as usize).unwrap_or_default();
     (frame.candidates.group_of(i), id)
 }
 
@@ -423,7 +423,7 @@ impl Replay {
     /// end be missing.
     fn allowed_levels(&self, frame: &Frame<'_>) -> Result<(), Violation> {
         for i in 0..frame.candidates.len() {
-            let settings = frame.objects.settings(frame.candidates.slot[i] as usize);
+            let settings = frame.objects.settings(frame.candidates.slot_of(i) as usize);
             let levels = frame.rates.levels(frame.candidates.table[i]).len();
             let mut allowed = settings.allowed(levels);
             if settings.may_skip && settings.forced.is_none() && allowed.coarsest.index() + 1 == levels {
@@ -475,7 +475,7 @@ fn in_memory(runtime: &Runtime, frame: &Frame<'_>) -> Result<(), Violation> {
     for i in 0..frame.candidates.len() {
         let (group, id) = who(frame, i);
         let levels = frame.rates.levels(frame.candidates.table[i]).len();
-        let resident = frame.objects.settings(frame.candidates.slot[i] as usize).showable(levels);
+        let resident = frame.objects.settings(frame.candidates.slot_of(i) as usize).showable(levels);
         let shown = runtime.shown(frame.objects, group, id);
         let may = |l: Level| !l.is_drawn() || resident.contains(l);
         hold_of((group, id), may(shown.level) && may(shown.from), "what is shown is in memory", || {

@@ -39,28 +39,27 @@ pub struct Candidate {
 
 /// The candidates of a frame, column by column: groups in the order of their ids, slots ascending within a group.
 ///
-/// The columns from `table` to `area_px2` are *details*. Where a policy can do without them
+/// The columns from `slot` to `area_px2` are *details*. Where a policy can do without them
 /// ([`Selector::needs`](crate::select::Selector::needs)) they are left empty, all or all but `size_px`, and
 /// [`Frame::candidate`](crate::select::Frame::candidate) works out those of a single candidate.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
-    /// See [`Candidate::slot`].
-    pub slot: Vec<u32>,
+    /// How many there are. While they are being listed columns may have more: what is left of an earlier frame.
+    len: usize,
     /// See [`Candidate::weight`].
     pub weight: Vec<f32>,
+    /// The heaviest weight; 0 where there is no candidate.
+    pub heaviest: f32,
     /// What was wanted in the last frame; `None` for an object that has just come into view.
     pub previous: Vec<Option<Level>>,
-    /// How long that has been wanted.
-    pub age_ms: Vec<u32>,
     /// Where the level that was wanted in the last frame stands among the levels of all tables
     /// ([`TableRates::index`](crate::rate::TableRates::index)), of a candidate that may choose among all levels of its
     /// table and counts once. [`NO_PLACE`] for any other, and for one that has just come into view.
     pub place: Vec<u32>,
     /// How many candidates there are at each place.
     pub census: Vec<u32>,
-    /// What the policy owes to each; empty where it keeps no accounts
-    /// ([`Selector::owed`](crate::select::Selector::owed)).
-    pub account: Vec<Account>,
+    /// See [`Candidate::slot`].
+    pub slot: Vec<u32>,
     /// See [`Candidate::table`].
     pub table: Vec<u16>,
     /// See [`Candidate::allowed`].
@@ -105,6 +104,30 @@ impl Account {
     }
 }
 
+/// What a frame can be asked of earlier ones about an object in view.
+pub trait Memory: fmt::Debug {
+    /// How long what was wanted of it in the last frame has been wanted; 0 where nothing was.
+    fn age_ms(&self, group: GroupId, slot: u32) -> u32;
+
+    /// What the policy owes to it: nothing where no accounts are kept
+    /// ([`Selector::owed`](crate::select::Selector::owed)).
+    fn account(&self, group: GroupId, slot: u32) -> Account;
+}
+
+/// No frame came before.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoMemory;
+
+impl Memory for NoMemory {
+    fn age_ms(&self, _: GroupId, _: u32) -> u32 {
+        0
+    }
+
+    fn account(&self, _: GroupId, _: u32) -> Account {
+        Account::default()
+    }
+}
+
 /// See [`Candidates::place`].
 pub const NO_PLACE: u32 = u32::MAX;
 
@@ -119,6 +142,15 @@ pub struct Row {
     pub known: u16,
     /// Its first candidate.
     pub first: u32,
+}
+
+impl Row {
+    /// The slot of candidate `i`, which is one of the row's.
+    pub fn slot_of(&self, i: usize) -> u32 {
+        let nth = i - self.first as usize;
+        let lane = if self.mask == u16::MAX { Some(nth) } else { lanes(self.mask).nth(nth) };
+        self.block * BLOCK as u32 + lane.unwrap_or(0) as u32
+    }
 }
 
 /// The end of a group's run in [`Candidates`]; it starts where the run before it ends.
@@ -164,27 +196,30 @@ impl PixelSum {
 impl Candidates {
     /// How many candidates there are.
     pub fn len(&self) -> usize {
-        self.slot.len()
+        self.len
     }
 
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.slot.is_empty()
+        self.len == 0
     }
 
     /// Whether the columns of details are filled.
     pub fn is_detailed(&self) -> bool {
-        self.table.len() == self.slot.len()
+        self.table.len() == self.len()
     }
 
     /// Forgets all candidates and keeps the memory. `places` is how many levels all tables have.
     pub fn clear(&mut self, places: usize) {
-        self.slot.clear();
-        self.weight.clear();
-        self.previous.clear();
-        self.age_ms.clear();
-        self.place.clear();
-        self.account.clear();
+        self.begin(places);
+        self.end();
+    }
+
+    /// [`Candidates::clear`] of a list that will be about as long as the last one was: its columns are overwritten, which
+    /// spares filling them with zeros. To be concluded by [`Candidates::end`].
+    pub(crate) fn begin(&mut self, places: usize) {
+        self.len = 0;
+        self.heaviest = 0.0;
         self.census.clear();
         self.census.resize(places, 0);
         self.clear_details();
@@ -193,8 +228,31 @@ impl Candidates {
         self.ends.clear();
     }
 
+    /// Concludes a list.
+    pub(crate) fn end(&mut self) {
+        self.weight.truncate(self.len);
+        self.previous.truncate(self.len);
+        self.place.truncate(self.len);
+    }
+
+    /// Adds the candidates of blocks, given with their masks. Their weights are yet to be written.
+    pub(crate) fn push_blocks(&mut self, blocks: impl Iterator<Item = (u32, u16)>) {
+        for (block, mask) in blocks {
+            self.rows.push(Row { block, mask, known: 0, first: self.len as u32 });
+            self.len += mask.count_ones() as usize;
+        }
+        self.weight.resize(self.len, 0.0);
+    }
+
+    /// Makes the columns of memory as long as the others. They are yet to be written.
+    pub(crate) fn make_room_for_memory(&mut self) {
+        self.previous.resize(self.len, None);
+        self.place.resize(self.len, NO_PLACE);
+    }
+
     /// Empties the columns of details.
     pub fn clear_details(&mut self) {
+        self.slot.clear();
         self.table.clear();
         self.allowed.clear();
         self.cost_scale.clear();
@@ -206,20 +264,13 @@ impl Candidates {
     /// Adds the candidates of a block: those in `mask`, with the weights in their lanes. Not their details, not their
     /// memory of earlier frames.
     pub fn push_row(&mut self, block: u32, mask: u16, weight: &[f32; BLOCK]) {
-        let (first, slot) = (self.slot.len() as u32, block * BLOCK as u32);
-        self.rows.push(Row { block, mask, known: 0, first });
-        if mask == u16::MAX {
-            self.slot.extend((0..BLOCK as u32).map(|lane| slot + lane));
-            self.weight.extend_from_slice(weight);
-        } else {
-            for lane in lanes(mask) {
-                self.slot.push(slot + lane as u32);
-                self.weight.push(weight[lane]);
-            }
+        self.rows.push(Row { block, mask, known: 0, first: self.len() as u32 });
+        for lane in lanes(mask) {
+            self.push_weight(weight[lane]);
         }
     }
 
-    /// Adds the sizes in the lanes of `mask` of the block that was pushed last.
+    /// Adds the sizes in the lanes of `mask` of a block.
     pub fn push_sizes(&mut self, mask: u16, size_px: &[f32; BLOCK]) {
         if mask == u16::MAX {
             self.size_px.extend_from_slice(size_px);
@@ -230,15 +281,22 @@ impl Candidates {
 
     /// Adds a candidate without memory of earlier frames, and its details.
     pub fn push(&mut self, c: Candidate) {
-        self.slot.push(c.slot);
-        self.weight.push(c.weight);
+        self.push_weight(c.weight);
         self.pixels.add(PixelSum::rounded(c.area_px2));
         self.push_details(c);
         self.forget_memory();
     }
 
+    fn push_weight(&mut self, weight: f32) {
+        self.weight.truncate(self.len);
+        self.weight.push(weight);
+        self.len += 1;
+        self.heaviest = self.heaviest.max(weight);
+    }
+
     /// Adds to the columns of details alone.
     pub fn push_details(&mut self, c: Candidate) {
+        self.slot.push(c.slot);
         self.table.push(c.table);
         self.allowed.push(c.allowed);
         self.cost_scale.push(c.cost_scale);
@@ -247,11 +305,29 @@ impl Candidates {
         self.area_px2.push(c.area_px2);
     }
 
-    /// Gives the candidates that were appended to the other columns no memory of earlier frames.
-    pub(crate) fn forget_memory(&mut self) {
-        self.previous.resize(self.slot.len(), None);
-        self.age_ms.resize(self.slot.len(), 0);
-        self.place.resize(self.slot.len(), NO_PLACE);
+    /// Gives the candidate that was pushed last no memory of earlier frames.
+    fn forget_memory(&mut self) {
+        self.previous.truncate(self.len - 1);
+        self.place.truncate(self.len - 1);
+        self.make_room_for_memory();
+    }
+
+    /// The slot of candidate `i`. O(1) of detailed ones, else O(log rows).
+    pub fn slot_of(&self, i: usize) -> u32 {
+        match self.slot.get(i) {
+            Some(&slot) => slot,
+            None => self.row_of(i).slot_of(i),
+        }
+    }
+
+    /// The row of candidate `i`.
+    fn row_of(&self, i: usize) -> &Row {
+        &self.rows[self.rows.partition_point(|row| row.first as usize <= i) - 1]
+    }
+
+    /// The slots of candidates, in order.
+    pub fn slots(&self) -> impl Iterator<Item = u32> + '_ {
+        (self.rows.iter()).flat_map(|row| lanes(row.mask).map(|lane| row.block * BLOCK as u32 + lane as u32))
     }
 
     /// One candidate, across the columns, which must be [detailed](Candidates::is_detailed).
@@ -268,20 +344,17 @@ impl Candidates {
         }
     }
 
-    /// What the policy owes to candidate `i`: nothing where no accounts are kept.
-    pub fn account_of(&self, i: usize) -> Account {
-        self.account.get(i).copied().unwrap_or_default()
-    }
-
     /// Rewrites details. No candidate keeps its place: what it costs may no longer be what its table says.
     pub fn revise(&mut self, mut change: impl FnMut(&mut Candidate)) {
         self.pixels = PixelSum::default();
         self.place.fill(NO_PLACE);
         self.census.fill(0);
+        self.heaviest = 0.0;
         for i in 0..self.len() {
             let mut candidate = self.get(i);
             change(&mut candidate);
             self.weight[i] = candidate.weight;
+            self.heaviest = self.heaviest.max(candidate.weight);
             self.allowed[i] = candidate.allowed;
             self.cost_scale[i] = candidate.cost_scale;
             self.size_px[i] = candidate.size_px;
@@ -325,13 +398,14 @@ impl Candidates {
         start..self.ends[run].end
     }
 
-    /// Counts how many candidates there are at each place.
-    pub(crate) fn take_census(&mut self) {
-        for &place in &self.place {
-            if let Some(count) = self.census.get_mut(place as usize) {
-                *count += 1;
-            }
-        }
+    /// Whether the census counts what is at each place, as far as two sums can tell.
+    pub(crate) fn is_census_right(&self) -> bool {
+        let code = |place: u32| (u64::from(place) + 1).wrapping_pow(5);
+        let placed = self.place.iter().filter(|&&place| place != NO_PLACE);
+        let found = placed.fold(0u64, |sum, &place| sum.wrapping_add(code(place)));
+        let counted =
+            |sum: u64, (place, &count): (u32, &u32)| sum.wrapping_add(code(place).wrapping_mul(count.into()));
+        found == (0..).zip(&self.census).fold(0, counted)
     }
 
     /// The candidates without a [place](Candidates::place).

@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 use glam::{DVec3, Quat, Vec2, Vec3};
 use lod_budget::bounds::Sphere;
 use lod_budget::frame::{
-    Budget, Candidate, Candidates, Change, Clock, FrameId, FrameTime, GroupId, SelectReport, Timing,
+    Budget, Candidate, Candidates, Change, Clock, FrameId, FrameTime, GroupId, NoMemory, SelectReport, Timing,
 };
 use lod_budget::rate::{CostModel, Stages, TableRates, cost_us};
 use lod_budget::runtime::{Activity, FrameInput, Runtime, RuntimeOptions, ViewInput};
@@ -165,7 +165,7 @@ impl Machine {
         rates.renew(objects.tables(), &self.truth);
         let frame = runtime.last_frame(objects);
         let price = |i: usize| {
-            let id = objects.id_of(frame.candidates.slot[i] as usize).expect("an object");
+            let id = objects.id_of(frame.candidates.slot_of(i) as usize).expect("an object");
             let shown = runtime.shown(objects, frame.candidates.group_of(i), id);
             let cost_us = |level| cost_us(&self.truth, &rates, &frame.candidate(i), level);
             cost_us(shown.level) + if shown.is_in_flight() { cost_us(shown.from) } else { 0.0 }
@@ -379,7 +379,7 @@ fn a_still_camera_never_reaches_the_final_level_babylon() {
         machine.play(&mut runtime, &mut objects, (half_us(), 600), |_| camera(), |_, _| {});
         assert_eq!(runtime.report().fades, 0);
         for (i, &wanted) in runtime.wanted().iter().enumerate() {
-            let id = objects.id_of(runtime.candidates().slot[i] as usize).expect("an object");
+            let id = objects.id_of(runtime.candidates().slot_of(i) as usize).expect("an object");
             let shown = runtime.shown(&objects, GroupId(0), id);
             assert_eq!((shown.level, shown.weight), (wanted, 1.0));
         }
@@ -509,7 +509,7 @@ fn skipping_what_does_not_fit_flips_levels_at_small_camera_moves_playcanvas() {
         |n: usize| camera().at(Vec3::new(0.01 * (n % 3) as f32, 0.0, 0.01 * (n % 5) as f32), Quat::IDENTITY);
     let mut history = Vec::new();
     machine.play(&mut runtime, &mut objects, (half_us(), 240), shake, |runtime, objects| {
-        let ids = runtime.candidates().slot.iter().map(|&s| objects.id_of(s as usize).expect("an object").0);
+        let ids = runtime.candidates().slots().map(|s| objects.id_of(s as usize).expect("an object").0);
         history.push(ids.zip(runtime.wanted().iter().copied()).collect::<Vec<_>>());
     });
     let objects_seconds = history[0].len() * 4;
@@ -655,6 +655,7 @@ fn counterexample(select: &mut dyn Selector) -> SelectReport {
         budget,
         timing,
         floor: 0.0,
+        memory: &NoMemory,
     };
     let mut levels = [Level::NOT_DRAWN; 2];
     select.select(&frame, &mut levels)
@@ -747,7 +748,7 @@ fn left_and_right_eye_differ_godot_o3de_vrtrial() {
     let mut stereo = runtime(Predictive::default());
     let (left, right) = (eye(-0.03, 0.1), eye(0.03, -0.1));
     stereo.frame(&mut objects, &FrameInput::new(&[left, right], half_us()));
-    let mut slots = stereo.candidates().slot.clone();
+    let mut slots: Vec<u32> = stereo.candidates().slots().collect();
     slots.dedup();
     assert_eq!(slots.len(), stereo.candidates().len(), "one level for both eyes");
     // Both eyes draw it: what both see costs twice.

@@ -16,7 +16,7 @@ pub use levels::{LevelRate, TableRates, estimated_error};
 use glam::Vec3;
 
 use crate::cull::VisibleBlock;
-use crate::frame::{Candidate, Candidates, PixelSum};
+use crate::frame::{Candidate, Candidates, PixelSum, Row};
 use crate::scene::{BLOCK, Block, Objects, Settings, lanes};
 use crate::table::Level;
 use crate::view::Lens;
@@ -39,7 +39,7 @@ pub fn cost_us(model: &CostModel, rates: &TableRates, candidate: &Candidate, lev
     model.object_us(geometry_us, f64::from(candidate.cost_scale), f64::from(candidate.area_px2))
 }
 
-/// Appends the candidates of a group of one view without their details: slots, weights and the sum of areas; the sizes too
+/// Appends the candidates of a group of one view without their details: weights and the sum of areas; the sizes too
 /// where they are asked for. The caller closes the run with [`Candidates::end_group`]. Candidates must not be detailed.
 pub fn weigh(
     objects: &Objects,
@@ -48,30 +48,74 @@ pub fn weigh(
     with_sizes: bool,
     candidates: &mut Candidates,
 ) {
-    let lens = &seen.lens;
-    for &VisibleBlock { block: index, mask } in &seen.visible {
-        let block = &objects.blocks()[index as usize];
-        let mut area = [0.0; BLOCK];
-        for (lane, area) in area.iter_mut().enumerate() {
-            *area = lens.area_px2(&block.sphere(lane));
-        }
-        let costly = costly_areas(objects, index, block, &area, mask);
-        candidates.pixels.add((0..BLOCK).map(|lane| costly[lane]).sum());
-        if !model.is_plain() {
-            attend(objects, index, block, lens, mask, model, &mut area);
-        }
-        for (weight, gain) in area.iter_mut().zip(&block.gain) {
-            *weight *= gain;
-        }
-        candidates.push_row(index, mask, &area);
-        if with_sizes {
-            candidates.push_sizes(mask, &sizes_px(objects, index, block, lens, mask));
+    let (first, first_row) = (candidates.len(), candidates.rows.len());
+    candidates.push_blocks(seen.visible.iter().map(|v| (v.block, v.mask)));
+    let Candidates { rows, weight, .. } = &mut *candidates;
+    let (rows, weight) = (&rows[first_row..], &mut weight[first..]);
+    let weighed = Weighing { objects, lens: &seen.lens, model, rows, weight }.run();
+    candidates.pixels.add(weighed.pixels);
+    candidates.heaviest = candidates.heaviest.max(weighed.heaviest);
+    if with_sizes {
+        for &VisibleBlock { block, mask } in &seen.visible {
+            candidates.push_sizes(mask, &sizes_px(objects, block, &seen.lens, mask));
         }
     }
 }
 
+/// Rows whose candidates are to be weighed, and where their weights go.
+struct Weighing<'a> {
+    objects: &'a Objects,
+    lens: &'a Lens,
+    model: &'a BenefitModel,
+    rows: &'a [Row],
+    weight: &'a mut [f32],
+}
+
+/// What weighing adds up.
+struct Weighed {
+    /// Areas as they count for the pixel stage, rounded.
+    pixels: f64,
+    heaviest: f32,
+}
+
+impl Weighing<'_> {
+    #[inline(always)]
+    fn run(self) -> Weighed {
+        let start = self.rows.first().map_or(0, |row| row.first) as usize;
+        let (mut pixels, mut heaviest) = ([0.0; BLOCK], [0.0f32; BLOCK]);
+        for row in self.rows {
+            let block = &self.objects.blocks()[row.block as usize];
+            let mut weight = [0.0; BLOCK];
+            for (lane, area) in weight.iter_mut().enumerate() {
+                *area = self.lens.area_px2(&block.sphere(lane));
+            }
+            let costly = costly_areas(self.objects, row.block, block, &weight, row.mask);
+            if !self.model.is_plain() {
+                attend(self.objects, row.block, block, self.lens, row.mask, self.model, &mut weight);
+            }
+            let at = row.first as usize - start;
+            for lane in 0..BLOCK {
+                weight[lane] *= block.gain[lane];
+                pixels[lane] += costly[lane];
+            }
+            if row.mask == u16::MAX {
+                self.weight[at..at + BLOCK].copy_from_slice(&weight);
+            } else {
+                let weights = &mut self.weight[at..at + row.mask.count_ones() as usize];
+                lanes(row.mask).zip(weights).for_each(|(lane, to)| *to = weight[lane]);
+                lanes(!row.mask).for_each(|lane| weight[lane] = 0.0);
+            }
+            for lane in 0..BLOCK {
+                heaviest[lane] = if weight[lane] > heaviest[lane] { weight[lane] } else { heaviest[lane] };
+            }
+        }
+        Weighed { pixels: pixels.iter().sum(), heaviest: heaviest.into_iter().fold(0.0, f32::max) }
+    }
+}
+
 /// The projected diameters of the lanes of `mask`, bias included, and of the others as they are.
-fn sizes_px(objects: &Objects, index: u32, block: &Block, lens: &Lens, mask: u16) -> [f32; BLOCK] {
+fn sizes_px(objects: &Objects, index: u32, lens: &Lens, mask: u16) -> [f32; BLOCK] {
+    let block = &objects.blocks()[index as usize];
     let mut sizes_px = [0.0; BLOCK];
     for (lane, size_px) in sizes_px.iter_mut().enumerate() {
         *size_px = lens.size_px(&block.sphere(lane));

@@ -31,7 +31,7 @@ impl Runtime {
         let slot = objects.slot_of(id)? as u32;
         let i = self.scratch.candidates.find(group, slot)?;
         let candidate = self.last_frame(objects).candidate(i);
-        let shown = self.group(group)?.visible(slot as usize)?;
+        let shown = self.groups.get(group)?.visible(slot as usize)?;
         let rates = self.rates.levels(candidate.table);
         let error = rates.get(shown.level.index()).map_or(0.0, |l| l.error);
         Some(Explanation {

@@ -1,24 +1,19 @@
 //! What is remembered of earlier frames, per view group and slot: sixteen slots to a block, as the objects are.
 
-use crate::frame::{Account, Candidates, Cause, Change, GroupId, NO_PLACE, Row};
+use crate::frame::{Account, Cause, Change, GroupId, Memory, NO_PLACE, Row};
 use crate::rate::TableRates;
 use crate::scene::{BLOCK, ObjectId, Objects, lanes};
 use crate::table::Level;
 use crate::transition::Shown;
 
-/// What is remembered of the objects of a block.
+/// What is remembered of the objects of a block and read in every frame.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 struct BlockMemory {
-    /// See [`Candidates::place`].
+    /// See [`Candidates::place`](crate::frame::Candidates::place).
     place: [u32; BLOCK],
-    /// Since when the level is wanted, by the group's clock in whole milliseconds, which wraps after seven weeks.
-    since_ms: [u32; BLOCK],
     /// The level that the policy wants.
     wanted: [Level; BLOCK],
-    /// The revision of the objects' block that the places hold for, and whether objects counted once then.
-    revision: u64,
-    once: bool,
     /// The last of the group's frames in which some of the block was in view.
     frame: u32,
     /// Bit per lane: it was in view in that frame. Memory ends when an object leaves.
@@ -28,16 +23,8 @@ struct BlockMemory {
 }
 
 impl BlockMemory {
-    const EMPTY: Self = Self {
-        place: [NO_PLACE; BLOCK],
-        since_ms: [0; BLOCK],
-        wanted: [Level::NOT_DRAWN; BLOCK],
-        revision: 0,
-        once: true,
-        frame: 0,
-        seen: 0,
-        unsteady: 0,
-    };
+    const EMPTY: Self =
+        Self { place: [NO_PLACE; BLOCK], wanted: [Level::NOT_DRAWN; BLOCK], frame: 0, seen: 0, unsteady: 0 };
 }
 
 /// The accounts of the objects of a block.
@@ -45,22 +32,34 @@ impl BlockMemory {
 struct BlockAccounts {
     /// Drops are those of the time when the level that is wanted came to be wanted.
     account: [Account; BLOCK],
-    /// Bit per lane: it was owed something in this one of the group's frames.
+    /// Bit per lane: it was owed something in this one of the group's frames, and in the one before.
     owing: u16,
+    owing_before: u16,
     frame: u32,
 }
 
 impl BlockAccounts {
-    const EMPTY: Self = Self { account: [Account { owed_ms: 0, drops: 0 }; BLOCK], owing: 0, frame: 0 };
+    const EMPTY: Self = Self {
+        account: [Account { owed_ms: 0, drops: 0 }; BLOCK],
+        owing: 0,
+        owing_before: 0,
+        frame: 0,
+    };
 
-    /// What was owed at the end of a frame, and the drops.
+    /// What was owed at the end of a frame, the last one or the one before, and the drops.
     fn get(&self, lane: usize, frame: u32) -> Account {
-        let is_owed = self.frame == frame && self.owing & (1 << lane) != 0;
+        let owing = match self.frame.wrapping_sub(frame) {
+            0 => self.owing,
+            1 => self.owing_before,
+            _ => 0,
+        };
+        let is_owed = owing & (1 << lane) != 0;
         Account { owed_ms: if is_owed { self.account[lane].owed_ms } else { 0 }, ..self.account[lane] }
     }
 
     fn set(&mut self, lane: usize, frame: u32, account: Account) {
         if self.frame != frame {
+            self.owing_before = if self.frame + 1 == frame { self.owing } else { 0 };
             (self.frame, self.owing) = (frame, 0);
         }
         self.account[lane] = account;
@@ -86,6 +85,12 @@ pub(super) struct GroupMemory {
     /// Whole milliseconds since the frame before.
     elapsed_ms: u16,
     blocks: Vec<BlockMemory>,
+    /// Per slot, since when the level is wanted, by the group's clock in whole milliseconds, which wraps after seven weeks.
+    since_ms: Vec<[u32; BLOCK]>,
+    /// How many of what was in view are at each place.
+    census: Vec<u32>,
+    /// The objects' revision that the places hold for, and whether objects counted once then.
+    placed: (u64, bool),
     /// Of every block, where the policy has use for them; else none.
     accounts: Vec<BlockAccounts>,
     /// Slots with an unsteady bit, ascending; those of this frame's end are in `fresh`.
@@ -100,13 +105,39 @@ pub(super) struct GroupMemory {
     moving: Vec<(ObjectId, Moved)>,
 }
 
-/// The memory of a group, made when first asked for.
-pub(super) fn of_group(groups: &mut Vec<GroupMemory>, id: GroupId) -> &mut GroupMemory {
-    let at = groups.binary_search_by_key(&id, |g| g.id).unwrap_or_else(|at| {
-        groups.insert(at, GroupMemory::new(id));
-        at
-    });
-    &mut groups[at]
+/// The memory of all groups, in the order of their ids.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Groups(Vec<GroupMemory>);
+
+impl Groups {
+    /// The memory of a group, made when first asked for.
+    pub fn of(&mut self, id: GroupId) -> &mut GroupMemory {
+        let at = self.0.binary_search_by_key(&id, |g| g.id).unwrap_or_else(|at| {
+            self.0.insert(at, GroupMemory::new(id));
+            at
+        });
+        &mut self.0[at]
+    }
+
+    /// The memory of a group that has had a frame.
+    pub fn get(&self, id: GroupId) -> Option<&GroupMemory> {
+        self.0.binary_search_by_key(&id, |g| g.id).ok().map(|at| &self.0[at])
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+}
+
+impl Memory for Groups {
+    fn age_ms(&self, group: GroupId, slot: u32) -> u32 {
+        self.get(group).map_or(0, |memory| memory.age_ms(slot))
+    }
+
+    fn account(&self, group: GroupId, slot: u32) -> Account {
+        self.get(group).map_or(Account::default(), |memory| memory.account(slot))
+    }
 }
 
 /// What places are looked up in.
@@ -135,6 +166,9 @@ impl GroupMemory {
             clock_ms: 0.0,
             elapsed_ms: 0,
             blocks: Vec::new(),
+            since_ms: Vec::new(),
+            census: Vec::new(),
+            placed: (0, true),
             accounts: Vec::new(),
             unsteady: Vec::new(),
             fresh: Vec::new(),
@@ -145,9 +179,12 @@ impl GroupMemory {
         }
     }
 
-    /// Starts a frame at `clock_ms` over so many blocks; returns the time since the group's last one.
-    pub fn begin_frame(&mut self, blocks: usize, clock_ms: f64) -> f64 {
+    /// Starts a frame at `clock_ms`; returns the time since the group's last one.
+    pub fn begin_frame(&mut self, places: Places<'_>, clock_ms: f64) -> f64 {
+        let blocks = places.objects.blocks().len();
         self.blocks.resize(blocks, BlockMemory::EMPTY);
+        self.since_ms.resize(blocks, [0; BLOCK]);
+        self.census.resize(places.rates.len(), 0);
         self.frame += 1;
         self.stayed = 0;
         std::mem::swap(&mut self.rows, &mut self.before);
@@ -162,42 +199,86 @@ impl GroupMemory {
         self.accounts.resize(self.blocks.len(), BlockAccounts::EMPTY);
     }
 
-    /// Notes that the candidates of a row are in view, and adds what is remembered of them to the candidates and to
-    /// `levels`. The row learns which of its objects were in view in the last frame as well.
+    /// Notes that the candidates of `rows` are in view, and recalls what was wanted of them. The rows learn which of their
+    /// objects were in view in the last frame as well. Lists what has left the view.
     pub fn recall(
         &mut self,
-        row: &mut Row,
+        rows: &mut [Row],
         places: Places<'_>,
-        candidates: &mut Candidates,
-        levels: &mut Vec<Level>,
+        recalled: Recalled<'_>,
+        changes: &mut Vec<Change>,
     ) {
-        let now_ms = whole_ms(self.clock_ms);
-        let memory = &mut self.blocks[row.block as usize];
-        row.known = if memory.frame + 1 == self.frame { memory.seen & row.mask } else { 0 };
-        (memory.frame, memory.seen) = (self.frame, row.mask);
-        self.stayed += row.known.count_ones();
-        self.rows.push(*row);
-        let revision = places.objects.block_revisions()[row.block as usize];
-        if memory.revision != revision || memory.once != places.once {
-            memory.renew(row, places, &mut self.unsteady);
-            (memory.revision, memory.once) = (revision, places.once);
+        self.renew(rows, places);
+        let (frame, blocks) = (self.frame, &mut self.blocks[..]);
+        self.stayed = Recalling { rows, frame, blocks, recalled }.run();
+        self.rows.extend_from_slice(rows);
+        if self.stayed != self.before.iter().map(|row| row.mask.count_ones()).sum::<u32>() {
+            self.dismiss_leavers(places.objects, changes);
         }
-        if row.known == u16::MAX {
-            candidates.previous.extend(memory.wanted.iter().map(|&level| Some(level)));
-            candidates.age_ms.extend(memory.since_ms.iter().map(|&since| now_ms.wrapping_sub(since)));
-            candidates.place.extend_from_slice(&memory.place);
-            levels.extend_from_slice(&memory.wanted);
-        } else {
-            memory.recall_lanes(row, now_ms, candidates, levels);
+    }
+
+    /// How many objects in view, now and in the frame before, are at each place.
+    pub fn census(&self) -> &[u32] {
+        &self.census
+    }
+
+    /// Looks up places anew where objects have changed, and cuts what is wanted to tables that may be others by now.
+    fn renew(&mut self, rows: &[Row], places: Places<'_>) {
+        let now = (places.objects.revision(), places.once);
+        let (since, once) = std::mem::replace(&mut self.placed, now);
+        if (since, once) == now {
+            return;
         }
-        if let Some(accounts) = self.accounts.get(row.block as usize) {
-            candidates.account.extend(lanes(row.mask).map(|lane| {
-                let known = row.known & (1 << lane) != 0;
-                let age_ms = now_ms.wrapping_sub(memory.since_ms[lane]);
-                let account = accounts.get(lane, self.frame - 1).after(self.elapsed_ms, age_ms);
-                if known { account } else { Account::default() }
-            }));
+        for row in rows {
+            let is_new = places.objects.block_revisions()[row.block as usize] > since || once != places.once;
+            let memory = &self.blocks[row.block as usize];
+            let is_known = memory.frame + 1 == self.frame;
+            if is_new && is_known {
+                slots_of(row.block, memory.seen & row.mask).for_each(|slot| self.renew_slot(slot, places));
+            }
         }
+    }
+
+    fn renew_slot(&mut self, slot: u32, places: Places<'_>) {
+        let (block, lane) = (slot as usize / BLOCK, slot as usize % BLOCK);
+        let wanted = self.blocks[block].wanted[lane];
+        let coarsest = places.rates.coarsest(places.objects.blocks()[block].table[lane]);
+        let cut = if wanted.is_drawn() { wanted.min(coarsest) } else { wanted };
+        if cut != wanted {
+            self.keep_showing(slot, Shown::steady(wanted));
+        }
+        self.set(slot, cut, places.of(slot as usize, cut));
+    }
+
+    /// Notes what is wanted in a slot that is in view.
+    fn set(&mut self, slot: u32, wanted: Level, place: u32) {
+        let (memory, lane) = (&mut self.blocks[slot as usize / BLOCK], slot as usize % BLOCK);
+        count(&mut self.census, memory.place[lane], -1);
+        count(&mut self.census, place, 1);
+        memory.wanted[lane] = wanted;
+        memory.place[lane] = place;
+    }
+
+    /// Goes on showing what is shown where something else is wanted of a sudden.
+    fn keep_showing(&mut self, slot: u32, shown: Shown) {
+        let (memory, bit) = (&mut self.blocks[slot as usize / BLOCK], 1 << (slot as usize % BLOCK));
+        if memory.unsteady & bit == 0 {
+            let at = self.unsteady.partition_point(|u| u.slot < slot);
+            self.unsteady.insert(at, Unsteady { slot, shown });
+            memory.unsteady |= bit;
+        }
+    }
+
+    /// How long what is wanted in a slot in view has been wanted.
+    pub fn age_ms(&self, slot: u32) -> u32 {
+        let since_ms = self.since_ms[slot as usize / BLOCK][slot as usize % BLOCK];
+        whole_ms(self.clock_ms).wrapping_sub(since_ms)
+    }
+
+    /// What the policy owes to a slot that was in view in the last frame too.
+    pub fn account(&self, slot: u32) -> Account {
+        let Some(accounts) = self.accounts.get(slot as usize / BLOCK) else { return Account::default() };
+        accounts.get(slot as usize % BLOCK, self.frame - 1).after(self.elapsed_ms, self.age_ms(slot))
     }
 
     /// What is shown in a slot that is in view.
@@ -235,26 +316,28 @@ impl GroupMemory {
     /// An object has come into view: it is shown as wanted at once.
     pub fn enter(&mut self, slot: u32, wanted: Level, place: u32) {
         // Coming into view is no switch: the level counts as one that is long wanted.
-        let since_ms = whole_ms(self.clock_ms).wrapping_sub(LONG_AGO_MS);
-        self.blocks[slot as usize / BLOCK].set(slot, wanted, place, since_ms);
-        self.blocks[slot as usize / BLOCK].unsteady &= !(1 << (slot as usize % BLOCK));
-        if let Some(accounts) = self.accounts.get_mut(slot as usize / BLOCK) {
-            accounts.set(slot as usize % BLOCK, self.frame, Account::default());
+        let (block, lane) = (slot as usize / BLOCK, slot as usize % BLOCK);
+        self.since_ms[block][lane] = whole_ms(self.clock_ms).wrapping_sub(LONG_AGO_MS);
+        self.blocks[block].place[lane] = NO_PLACE;
+        self.blocks[block].unsteady &= !(1 << lane);
+        self.set(slot, wanted, place);
+        if let Some(accounts) = self.accounts.get_mut(block) {
+            accounts.set(lane, self.frame, Account::default());
         }
     }
 
     /// Notes that something else is wanted than before.
     pub fn want(&mut self, slot: u32, wanted: Level, place: u32) {
-        let since_ms = whole_ms(self.clock_ms);
-        let (memory, lane) = (&mut self.blocks[slot as usize / BLOCK], slot as usize % BLOCK);
-        if let Some(accounts) = self.accounts.get_mut(slot as usize / BLOCK) {
-            let put_in = if wanted < memory.wanted[lane] { Account::REFINEMENT_DROPS } else { 0 };
-            let age_ms = since_ms.wrapping_sub(memory.since_ms[lane]);
-            let account = accounts.account[lane].after(0, age_ms);
-            let drops = account.drops.saturating_add(put_in);
+        let (block, lane) = (slot as usize / BLOCK, slot as usize % BLOCK);
+        let age_ms = self.age_ms(slot);
+        if let Some(accounts) = self.accounts.get_mut(block) {
+            let is_finer = wanted < self.blocks[block].wanted[lane];
+            let put_in = if is_finer { Account::REFINEMENT_DROPS } else { 0 };
+            let drops = accounts.account[lane].after(0, age_ms).drops.saturating_add(put_in);
             accounts.set(lane, self.frame, Account { owed_ms: 0, drops });
         }
-        memory.set(slot, wanted, place, since_ms);
+        self.since_ms[block][lane] = whole_ms(self.clock_ms);
+        self.set(slot, wanted, place);
     }
 
     /// Notes that a finer level of a slot has been held back for so long.
@@ -280,11 +363,8 @@ impl GroupMemory {
         }
     }
 
-    /// Lists what has left the view since the group's last frame.
-    pub fn end_frame(&mut self, objects: &Objects, changes: &mut Vec<Change>) {
-        if self.stayed != self.before.iter().map(|row| row.mask.count_ones()).sum::<u32>() {
-            self.list_leavers(objects, changes);
-        }
+    /// Forgets what is no longer unsteady.
+    pub fn end_frame(&mut self) {
         let (blocks, frame) = (&mut self.blocks, self.frame);
         self.unsteady.retain(|u| {
             let (memory, bit) = (&mut blocks[u.slot as usize / BLOCK], 1 << (u.slot as usize % BLOCK));
@@ -301,11 +381,15 @@ impl GroupMemory {
         }
     }
 
-    fn list_leavers(&self, objects: &Objects, changes: &mut Vec<Change>) {
-        for row in &self.before {
+    /// Forgets what has left the view since the group's last frame, and lists it.
+    fn dismiss_leavers(&mut self, objects: &Objects, changes: &mut Vec<Change>) {
+        for at in 0..self.before.len() {
+            let row = self.before[at];
             let memory = &self.blocks[row.block as usize];
             let stayed = if memory.frame == self.frame { memory.seen } else { 0 };
             for slot in slots_of(row.block, row.mask & !stayed) {
+                let place = self.blocks[row.block as usize].place[slot as usize % BLOCK];
+                count(&mut self.census, place, -1);
                 if let Some(object) = objects.id_of(slot as usize) {
                     self.leave(object, self.shown_at(slot).level, changes);
                 }
@@ -331,6 +415,7 @@ impl GroupMemory {
     ) {
         self.take_moved(objects, tenants, revision);
         self.blocks.resize(objects.blocks().len(), BlockMemory::EMPTY);
+        self.since_ms.resize(objects.blocks().len(), [0; BLOCK]);
         if !self.accounts.is_empty() {
             self.keep_accounts();
         }
@@ -368,7 +453,8 @@ impl GroupMemory {
                 let (memory, lane) = (&mut self.blocks[row.block as usize], slot as usize % BLOCK);
                 let accounts = self.accounts.get(row.block as usize);
                 let account = accounts.map(|accounts| accounts.get(lane, self.frame)).unwrap_or_default();
-                let (wanted, since_ms) = (memory.wanted[lane], memory.since_ms[lane]);
+                let (wanted, since_ms) = (memory.wanted[lane], self.since_ms[row.block as usize][lane]);
+                count(&mut self.census, memory.place[lane], -1);
                 self.moving.push((id, Moved { wanted, since_ms, shown, account }));
                 memory.seen &= !(1 << lane);
                 memory.unsteady &= !(1 << lane);
@@ -387,7 +473,9 @@ impl GroupMemory {
             self.rows.push(Row { block: (slot / BLOCK) as u32, mask: 0, known: 0, first: 0 });
         }
         memory.seen |= 1 << lane;
-        memory.set(slot as u32, state.wanted, NO_PLACE, state.since_ms);
+        memory.wanted[lane] = state.wanted;
+        memory.place[lane] = NO_PLACE;
+        self.since_ms[slot / BLOCK][lane] = state.since_ms;
         if let Some(accounts) = self.accounts.get_mut(slot / BLOCK) {
             accounts.set(lane, self.frame, state.account);
         }
@@ -407,47 +495,55 @@ struct Moved {
     account: Account,
 }
 
-impl BlockMemory {
-    fn set(&mut self, slot: u32, wanted: Level, place: u32, since_ms: u32) {
-        let lane = slot as usize % BLOCK;
-        self.wanted[lane] = wanted;
-        self.place[lane] = place;
-        self.since_ms[lane] = since_ms;
-    }
+/// Where what is recalled of candidates goes: columns of theirs.
+pub(super) struct Recalled<'a> {
+    pub previous: &'a mut [Option<Level>],
+    pub place: &'a mut [u32],
+    pub levels: &'a mut [Level],
+}
 
-    /// Looks up the places anew, and cuts what is wanted to tables that may be others by now.
-    fn renew(&mut self, row: &Row, places: Places<'_>, unsteady: &mut Vec<Unsteady>) {
-        for slot in slots_of(row.block, row.known) {
-            let lane = slot as usize % BLOCK;
-            let (wanted, table) =
-                (self.wanted[lane], places.objects.blocks()[row.block as usize].table[lane]);
-            if wanted.is_drawn() && wanted > places.rates.coarsest(table) {
-                self.wanted[lane] = places.rates.coarsest(table);
-                self.keep_showing(slot, Shown::steady(wanted), unsteady);
+/// Rows whose candidates are to be recalled.
+struct Recalling<'a> {
+    rows: &'a mut [Row],
+    frame: u32,
+    blocks: &'a mut [BlockMemory],
+    recalled: Recalled<'a>,
+}
+
+impl Recalling<'_> {
+    /// Returns how many are in view that were in view before.
+    #[inline(always)]
+    fn run(self) -> u32 {
+        let Recalled { previous, place, levels } = self.recalled;
+        let start = self.rows.first().map_or(0, |row| row.first) as usize;
+        let mut stayed = 0;
+        for row in self.rows {
+            let memory = &mut self.blocks[row.block as usize];
+            row.known = if memory.frame + 1 == self.frame { memory.seen & row.mask } else { 0 };
+            (memory.frame, memory.seen) = (self.frame, row.mask);
+            stayed += row.known.count_ones();
+            let at = row.first as usize - start;
+            if row.known == u16::MAX {
+                place[at..at + BLOCK].copy_from_slice(&memory.place);
+                levels[at..at + BLOCK].copy_from_slice(&memory.wanted);
+                previous[at..at + BLOCK].copy_from_slice(&memory.wanted.map(Some));
+            } else {
+                for (at, lane) in (at..).zip(lanes(row.mask)) {
+                    let known = row.known & (1 << lane) != 0;
+                    place[at] = if known { memory.place[lane] } else { NO_PLACE };
+                    levels[at] = if known { memory.wanted[lane] } else { Level::NOT_DRAWN };
+                    previous[at] = known.then_some(memory.wanted[lane]);
+                }
             }
-            self.place[lane] = places.of(slot as usize, self.wanted[lane]);
         }
+        stayed
     }
+}
 
-    /// Goes on showing what is shown where something else is wanted of a sudden.
-    fn keep_showing(&mut self, slot: u32, shown: Shown, unsteady: &mut Vec<Unsteady>) {
-        let bit = 1 << (slot as usize % BLOCK);
-        if self.unsteady & bit == 0 {
-            let at = unsteady.partition_point(|u| u.slot < slot);
-            unsteady.insert(at, Unsteady { slot, shown });
-            self.unsteady |= bit;
-        }
-    }
-
-    /// [`GroupMemory::recall`] where the row is not full, or not all of it is known.
-    fn recall_lanes(&self, row: &Row, now_ms: u32, candidates: &mut Candidates, levels: &mut Vec<Level>) {
-        for lane in lanes(row.mask) {
-            let known = row.known & (1 << lane) != 0;
-            candidates.previous.push(known.then_some(self.wanted[lane]));
-            candidates.age_ms.push(if known { now_ms.wrapping_sub(self.since_ms[lane]) } else { 0 });
-            candidates.place.push(if known { self.place[lane] } else { NO_PLACE });
-            levels.push(if known { self.wanted[lane] } else { Level::NOT_DRAWN });
-        }
+/// Counts one more, or one less, at a place.
+fn count(census: &mut [u32], place: u32, by: i32) {
+    if let Some(count) = census.get_mut(place as usize) {
+        *count = count.wrapping_add_signed(by);
     }
 }
 
@@ -472,14 +568,14 @@ pub(super) struct Layout {
 impl Layout {
     /// Carries every group's memory along when objects have come, gone or changed their slots. Lists those that have
     /// gone while in view.
-    pub fn follow(&mut self, objects: &Objects, groups: &mut [GroupMemory], changes: &mut Vec<Change>) {
+    pub fn follow(&mut self, objects: &Objects, groups: &mut Groups, changes: &mut Vec<Change>) {
         let now = objects.layout_revision();
         let before = self.revision.replace(now);
         if before == Some(now) {
             return;
         }
         let since = before.unwrap_or(0);
-        for group in groups {
+        for group in &mut groups.0 {
             group.follow(objects, &self.tenants, since, changes);
         }
         self.tenants.resize(objects.blocks().len() * BLOCK, None);
@@ -511,15 +607,16 @@ mod tests {
         rates.renew(objects.tables(), &CostModel::default());
         let places = Places { objects: &objects, rates: &rates, once: false };
         let mut memory = GroupMemory::new(GroupId(0));
-        let (mut candidates, mut levels) = (Candidates::default(), Vec::new());
-        let mut row = Row { block: 0, mask: 1, known: 0, first: 0 };
-        memory.begin_frame(1, 0.0);
-        memory.recall(&mut row, places, &mut candidates, &mut levels);
-        assert_eq!(row.known, 0);
+        let recall = |memory: &mut GroupMemory, clock_ms: f64| {
+            let mut rows = [Row { block: 0, mask: 1, known: 0, first: 0 }];
+            let (mut previous, mut place, mut levels) = ([None], [NO_PLACE], [Level::NOT_DRAWN]);
+            let recalled = Recalled { previous: &mut previous, place: &mut place, levels: &mut levels };
+            memory.begin_frame(places, clock_ms);
+            memory.recall(&mut rows, places, recalled, &mut Vec::new());
+            (rows[0].known, previous[0])
+        };
+        assert_eq!(recall(&mut memory, 0.0), (0, None));
         memory.enter(0, Level::FINEST, NO_PLACE);
-        memory.begin_frame(1, 16.0);
-        memory.recall(&mut row, places, &mut candidates, &mut levels);
-        assert_eq!(row.known, 1);
-        assert_eq!(candidates.previous, [None, Some(Level::FINEST)]);
+        assert_eq!(recall(&mut memory, 16.0), (1, Some(Level::FINEST)));
     }
 }

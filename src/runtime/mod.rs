@@ -16,7 +16,9 @@ use std::ops::Range;
 use crate::cull::{BlockTree, CullOptions, CullReport, ValueFloor};
 use crate::feedback::{Feedback, FeedbackOptions, Prediction};
 use crate::frame::OptionsError;
-use crate::frame::{Candidates, Change, FrameId, FrameReport, FrameTime, GroupEnd, GroupId, NO_PLACE};
+use crate::frame::{
+    Candidates, Change, FrameId, FrameReport, FrameTime, GroupEnd, GroupId, Memory, NO_PLACE, NoMemory,
+};
 use crate::knapsack::FixedSum;
 use crate::rate::{BenefitModel, CostModel, Drivers, Seen, Stages, TableRates, rate, weigh};
 use crate::scene::{BLOCK, ObjectId, Objects};
@@ -24,7 +26,7 @@ use crate::select::{Frame, Needs, Selector};
 use crate::table::Level;
 use crate::transition::{Shown, TransitionKind, TransitionOptions, follow};
 use crate::view::View;
-use memory::{GroupMemory, Layout, Places};
+use memory::{GroupMemory, Groups, Layout, Places, Recalled};
 use tally::Tally;
 
 /// Options of a [`Runtime`].
@@ -106,7 +108,7 @@ pub struct Runtime {
     /// Whether some objects may be left out, at this revision of them.
     skippable: (u64, bool),
     layout: Layout,
-    groups: Vec<GroupMemory>,
+    groups: Groups,
     clock_ms: f64,
     report: FrameReport,
     changes: Vec<Change>,
@@ -156,7 +158,7 @@ impl Runtime {
             rated: None,
             skippable: (0, false),
             layout: Layout::default(),
-            groups: Vec::new(),
+            groups: Groups::default(),
             clock_ms: 0.0,
             report: FrameReport::default(),
             changes: Vec::new(),
@@ -190,13 +192,13 @@ impl Runtime {
 
     /// What is shown of an object to a group; nothing of an object that is out of view.
     pub fn shown(&self, objects: &Objects, group: GroupId, id: ObjectId) -> Shown {
-        let found = objects.slot_of(id).zip(self.group(group));
+        let found = objects.slot_of(id).zip(self.groups.get(group));
         found.and_then(|(slot, memory)| memory.visible(slot)).unwrap_or(Shown::NOTHING)
     }
 
     /// Everything in view of a group: slots ascending, and what is shown of the objects in them.
     pub fn shown_slots(&self, group: GroupId) -> impl Iterator<Item = (usize, Shown)> + '_ {
-        self.group(group).into_iter().flat_map(GroupMemory::shown)
+        self.groups.get(group).into_iter().flat_map(GroupMemory::shown)
     }
 
     /// The cost model in use, refitted by feedback.
@@ -217,7 +219,7 @@ impl Runtime {
 
     /// The last frame as the selector saw it.
     pub fn last_frame<'a>(&'a self, objects: &'a Objects) -> Frame<'a> {
-        frame_of(objects, &self.scratch.candidates, &self.rates, &self.feedback, &self.report)
+        frame_of(objects, &self.scratch.candidates, &self.rates, &self.feedback, &self.groups, &self.report)
     }
 
     /// Forgets everything learnt and shown, as if no frame had been run; the next changes start from nothing. The next
@@ -235,10 +237,6 @@ impl Runtime {
         self.changes.clear();
         self.scratch.candidates.clear(0);
         self.scratch.levels.clear();
-    }
-
-    fn group(&self, group: GroupId) -> Option<&GroupMemory> {
-        self.groups.binary_search_by_key(&group, |g| g.id).ok().map(|at| &self.groups[at])
     }
 
     /// Advances the clock, learns from measurements, and brings up to date what is kept per slot and per table.
@@ -274,7 +272,7 @@ impl Runtime {
         let views = input.views;
         self.order_views(views);
         let in_detail = self.is_in_detail(views);
-        self.scratch.candidates.clear(self.rates.len());
+        self.scratch.candidates.begin(self.rates.len());
         let mut first = 0;
         while let Some(&view) = self.scratch.order.get(first) {
             let group = views[view].group;
@@ -291,6 +289,7 @@ impl Runtime {
             candidates.end_group(group, seen[0].lens, count);
             first += count;
         }
+        self.scratch.candidates.end();
         self.report.candidates = self.scratch.candidates.len();
     }
 
@@ -336,29 +335,39 @@ impl Runtime {
     /// of transitions in flight cost, by the model.
     fn remember(&mut self, objects: &Objects) -> f64 {
         self.scratch.unsteady.clear();
-        self.scratch.levels.clear();
+        self.scratch.candidates.make_room_for_memory();
+        self.scratch.levels.resize(self.scratch.candidates.len(), Level::NOT_DRAWN);
         let mut fades_us = FixedSum::default();
         let mut first_row = 0;
         for run in 0..self.scratch.candidates.ends.len() {
             let GroupEnd { group, end_row, .. } = self.scratch.candidates.ends[run];
-            let once = self.counts_once(run);
-            let places = Places { objects, rates: &self.rates, once };
-            let Scratch { candidates, levels, .. } = &mut self.scratch;
-            let memory = memory::of_group(&mut self.groups, group);
-            let dt_ms = memory.begin_frame(objects.blocks().len(), self.clock_ms);
-            if self.selector.owed().is_some() {
-                memory.keep_accounts();
-            }
-            for at in first_row..end_row {
-                let mut row = candidates.rows[at];
-                memory.recall(&mut row, places, candidates, levels);
-                candidates.rows[at] = row;
-            }
+            let dt_ms = self.recall(objects, run, first_row..end_row);
             self.advance(objects, group, dt_ms as f32, &mut fades_us);
             first_row = end_row;
         }
-        self.scratch.candidates.take_census();
+        debug_assert!(self.scratch.candidates.is_census_right());
         fades_us.value()
+    }
+
+    /// Recalls what was wanted of the candidates of a group, which are in `rows`, and lists what has left its view. Returns
+    /// the time since the group's last frame.
+    fn recall(&mut self, objects: &Objects, run: usize, rows: Range<usize>) -> f64 {
+        let places = Places { objects, rates: &self.rates, once: self.counts_once(run) };
+        let Scratch { candidates, levels, .. } = &mut self.scratch;
+        let (group, range) = (candidates.ends[run].group, candidates.run(run));
+        let memory = self.groups.of(group);
+        let dt_ms = memory.begin_frame(places, self.clock_ms);
+        if self.selector.owed().is_some() {
+            memory.keep_accounts();
+        }
+        let recalled = Recalled {
+            previous: &mut candidates.previous[range.clone()],
+            place: &mut candidates.place[range.clone()],
+            levels: &mut levels[range],
+        };
+        memory.recall(&mut candidates.rows[rows], places, recalled, &mut self.changes);
+        candidates.census.iter_mut().zip(memory.census()).for_each(|(sum, &count)| *sum += count);
+        dt_ms
     }
 
     /// Whether everything that a group sees costs what its table says, once.
@@ -371,9 +380,9 @@ impl Runtime {
     /// Advances the transitions of a group, notes who is not shown as wanted, and adds up what outgoing levels cost.
     fn advance(&mut self, objects: &Objects, group: GroupId, dt_ms: f32, fades_us: &mut FixedSum) {
         let Scratch { candidates, unsteady, .. } = &mut self.scratch;
-        let frame = frame_of(objects, candidates, &self.rates, &self.feedback, &self.report);
+        let frame = frame_of(objects, candidates, &self.rates, &self.feedback, &NoMemory, &self.report);
         let options = &self.options.transition;
-        let memory = memory::of_group(&mut self.groups, group);
+        let memory = self.groups.of(group);
         let mut fades = 0;
         for (slot, shown) in memory.unsteady() {
             let Some(i) = candidates.find(group, slot) else { continue };
@@ -395,7 +404,14 @@ impl Runtime {
         self.report.budget = budget;
         self.report.fades_us = fades_us;
         let mut levels = std::mem::take(&mut self.scratch.levels);
-        let frame = frame_of(objects, &self.scratch.candidates, &self.rates, &self.feedback, &self.report);
+        let frame = frame_of(
+            objects,
+            &self.scratch.candidates,
+            &self.rates,
+            &self.feedback,
+            &self.groups,
+            &self.report,
+        );
         self.report.select = self.selector.select(&frame, &mut levels);
         self.scratch.levels = levels;
     }
@@ -411,7 +427,7 @@ impl Runtime {
             self.note_wanted(objects, run);
             self.note_owed(run);
             self.grant_requests(objects, group, &mut reserve_us);
-            memory::of_group(&mut self.groups, group).end_frame(objects, &mut self.changes);
+            self.groups.of(group).end_frame();
             self.scratch.all_news.extend_from_slice(&self.scratch.news);
         }
         self.changes.sort_unstable_by_key(|c| (c.group, c.object));
@@ -446,9 +462,9 @@ impl Runtime {
         self.scratch.requests.clear();
         for &i in &news {
             let Scratch { candidates, levels, .. } = &self.scratch;
-            let (slot, previous, wanted) = (candidates.slot[i], candidates.previous[i], levels[i]);
+            let (slot, previous, wanted) = (candidates.slot_of(i), candidates.previous[i], levels[i]);
             let place = Places { objects, rates: &self.rates, once }.of(slot as usize, wanted);
-            let memory = memory::of_group(&mut self.groups, group);
+            let memory = self.groups.of(group);
             match previous {
                 Some(previous) => {
                     let shown = memory.shown_at(slot);
@@ -473,17 +489,17 @@ impl Runtime {
     fn note_owed(&mut self, run: usize) {
         let (candidates, owed) = (&self.scratch.candidates, self.selector.owed().unwrap_or_default());
         let (group, range) = (candidates.ends[run].group, candidates.run(run));
-        let memory = memory::of_group(&mut self.groups, group);
+        let memory = self.groups.of(group);
         let first = owed.partition_point(|&i| (i as usize) < range.start);
         for i in owed[first..].iter().map(|&i| i as usize).take_while(|i| range.contains(i)) {
-            memory.owe(candidates.slot[i], candidates.account_of(i).owed_ms.max(1));
+            memory.owe(candidates.slot_of(i), memory.account(candidates.slot_of(i)).owed_ms.max(1));
         }
     }
 
     /// Asks for a transition of candidate `i` to what is wanted. Where a level that is `shown` is no longer in its table
     /// or in memory there can be none: it switches hard.
     fn ask(&mut self, objects: &Objects, group: GroupId, i: usize, shown: Shown) {
-        let (slot, wanted) = (self.scratch.candidates.slot[i], self.scratch.levels[i]);
+        let (slot, wanted) = (self.scratch.candidates.slot_of(i), self.scratch.levels[i]);
         let table = objects.blocks()[slot as usize / BLOCK].table[slot as usize % BLOCK];
         let levels = self.rates.levels(table).len();
         let showable = objects.settings(slot as usize).showable(levels);
@@ -494,7 +510,7 @@ impl Runtime {
             return;
         }
         let after = if hard { Shown::steady(wanted) } else { shown };
-        memory::of_group(&mut self.groups, group).show(slot, after);
+        self.groups.of(group).show(slot, after);
         if shown.level != wanted {
             self.push_change(objects, i, shown.level, after);
         }
@@ -506,14 +522,15 @@ impl Runtime {
         let options = self.options.transition;
         let mut requests = std::mem::take(&mut self.scratch.requests);
         if options.kind != TransitionKind::Hard {
-            let slots = &self.scratch.candidates.slot;
-            requests.sort_unstable_by_key(|&(i, _)| objects.id_of(slots[i] as usize));
+            let candidates = &self.scratch.candidates;
+            requests.sort_unstable_by_key(|&(i, _)| objects.id_of(candidates.slot_of(i) as usize));
         }
         for &(i, before) in &requests {
             let Scratch { candidates, levels, .. } = &self.scratch;
-            let frame = frame_of(objects, candidates, &self.rates, &self.feedback, &self.report);
+            let frame =
+                frame_of(objects, candidates, &self.rates, &self.feedback, &self.groups, &self.report);
             let after = follow(before, levels[i], &options, |level| frame.cost_us(i, level), reserve_us);
-            memory::of_group(&mut self.groups, group).show(candidates.slot[i], after);
+            self.groups.of(group).show(candidates.slot_of(i), after);
             if before.level != after.level {
                 self.push_change(objects, i, before.level, after);
             }
@@ -523,7 +540,7 @@ impl Runtime {
 
     fn push_change(&mut self, objects: &Objects, i: usize, old: Level, shown: Shown) {
         let group = self.scratch.candidates.group_of(i);
-        let object = objects.id_of(self.scratch.candidates.slot[i] as usize).unwrap_or_default();
+        let object = objects.id_of(self.scratch.candidates.slot_of(i) as usize).unwrap_or_default();
         let cause = self.cause(objects, i, shown);
         self.changes.push(Change { group, object, old, new: shown.level, cause });
     }
@@ -549,16 +566,15 @@ impl Runtime {
     /// Who has a place and is no news is shown as was wanted, and has been counted.
     fn tally(&mut self, objects: &Objects) -> (Drivers, f64) {
         let Scratch { candidates, tally, all_news, .. } = &mut self.scratch;
-        let frame = frame_of(objects, candidates, &self.rates, &self.feedback, &self.report);
+        let frame = frame_of(objects, candidates, &self.rates, &self.feedback, &self.groups, &self.report);
         tally.begin(&frame, self.options.transition.kind);
-        for i in candidates.unplaced() {
-            let memory = memory::of_group(&mut self.groups, candidates.group_of(i));
-            tally.add(&frame, i, memory.shown_at(candidates.slot[i]));
-        }
-        for &i in all_news.iter().filter(|&&i| candidates.place[i] != NO_PLACE) {
-            let memory = memory::of_group(&mut self.groups, candidates.group_of(i));
-            tally.recount(&frame, i, memory.shown_at(candidates.slot[i]));
-        }
+        let shown = |i: usize| {
+            let memory = self.groups.get(candidates.group_of(i));
+            memory.map_or(Shown::NOTHING, |memory| memory.shown_at(candidates.slot_of(i)))
+        };
+        candidates.unplaced().for_each(|i| tally.add(&frame, i, shown(i)));
+        let placed = all_news.iter().filter(|&&i| candidates.place[i] != NO_PLACE);
+        placed.for_each(|&i| tally.recount(&frame, i, shown(i)));
         tally.sum(frame.model, objects.tables())
     }
 }
@@ -569,6 +585,7 @@ fn frame_of<'a>(
     candidates: &'a Candidates,
     rates: &'a TableRates,
     feedback: &'a Feedback,
+    memory: &'a dyn Memory,
     report: &FrameReport,
 ) -> Frame<'a> {
     Frame {
@@ -580,6 +597,7 @@ fn frame_of<'a>(
         budget: report.budget,
         timing: feedback.timing(),
         floor: report.floor,
+        memory,
     }
 }
 

@@ -18,7 +18,7 @@ pub use reactive::{Reactive, ReactiveOptions};
 pub use screen_size::{Measure, ScreenSize, ScreenSizeOptions};
 pub use steadiness::Steadiness;
 
-use crate::frame::{Budget, Candidate, Candidates, Cause, FrameId, SelectReport, Timing};
+use crate::frame::{Account, Budget, Candidate, Candidates, Cause, FrameId, Memory, SelectReport, Timing};
 use crate::knapsack::FixedSum;
 use crate::rate::{self, CostModel, TableRates, cost_us};
 use crate::scene::Objects;
@@ -44,6 +44,8 @@ pub struct Frame<'a> {
     /// Objects that may be left out and are worth less than this, in px² per µs, are no candidates: see
     /// [`Selector::floor`]. 0 where everything in view is one.
     pub floor: f64,
+    /// What is remembered of earlier frames.
+    pub memory: &'a dyn Memory,
 }
 
 impl Frame<'_> {
@@ -55,7 +57,7 @@ impl Frame<'_> {
             return c.get(i);
         }
         let run = c.ends.partition_point(|g| g.end <= i);
-        rate::details(self.objects, self.rates, &c.ends[run].lens, c.slot[i], c.weight[i])
+        rate::details(self.objects, self.rates, &c.ends[run].lens, c.slot_of(i), c.weight[i])
     }
 
     /// A copy of the candidates with all details.
@@ -89,9 +91,22 @@ impl Frame<'_> {
         self.rates.minimum(candidate.table, candidate.allowed)
     }
 
+    /// How long what was wanted of candidate `i` in the last frame has been wanted; 0 where nothing was.
+    pub fn age_ms(&self, i: usize) -> u32 {
+        let known = self.candidates.previous[i].is_some();
+        if known { self.memory.age_ms(self.candidates.group_of(i), self.candidates.slot_of(i)) } else { 0 }
+    }
+
+    /// What the policy owes to candidate `i`: nothing where no accounts are kept.
+    pub fn account(&self, i: usize) -> Account {
+        let known = self.candidates.previous[i].is_some();
+        let account = || self.memory.account(self.candidates.group_of(i), self.candidates.slot_of(i));
+        if known { account() } else { Account::default() }
+    }
+
     /// What breaks ties between candidates: the object's id, then the group. The lower goes first.
     pub fn key(&self, i: usize) -> u128 {
-        let id = self.objects.id_of(self.candidates.slot[i] as usize).unwrap_or_default();
+        let id = self.objects.id_of(self.candidates.slot_of(i) as usize).unwrap_or_default();
         u128::from(id.0) << 32 | u128::from(self.candidates.group_of(i).0)
     }
 
@@ -154,7 +169,7 @@ pub trait Selector: Send {
     }
 
     /// Candidates of the last selection, ascending, that the policy holds back from a finer level that it has chosen.
-    /// [`Candidates::account`] tells it in the next frame for how long. `None` from a policy that has no use for accounts.
+    /// [`Frame::account`] tells it in the next frame for how long. `None` from a policy that has no use for accounts.
     fn owed(&self) -> Option<&[u32]> {
         None
     }

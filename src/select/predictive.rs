@@ -56,11 +56,11 @@ impl PredictiveOptions {
         self.steadiness.map_or(self.ease, |steadiness| steadiness.spare)
     }
 
-    fn price(&self, previous: Option<Level>, age_ms: u32) -> f32 {
+    fn price(&self, previous: Option<Level>, age_ms: impl Fn() -> u32) -> f32 {
         match previous {
             _ if self.steadiness.is_some() => 0.0,
             None => 0.0,
-            Some(_) if age_ms < self.dwell_ms => self.dwell,
+            Some(_) if age_ms() < self.dwell_ms => self.dwell,
             Some(_) => self.hysteresis,
         }
     }
@@ -92,7 +92,8 @@ const OWN: u32 = u32::MAX;
 /// its details.
 fn plain_newcomer(frame: &Frame<'_>, i: usize) -> Option<SharedClass> {
     let candidates = frame.candidates;
-    let (block, lane) = (candidates.slot[i] as usize / BLOCK, candidates.slot[i] as usize % BLOCK);
+    let slot = candidates.slot_of(i) as usize;
+    let (block, lane) = (slot / BLOCK, slot % BLOCK);
     let block = &frame.objects.blocks()[block];
     let plain =
         !candidates.is_detailed() && candidates.previous[i].is_none() && block.special & (1 << lane) == 0;
@@ -143,7 +144,7 @@ impl Predictive {
         }
         let profile = if own { OWN } else { self.hulls.shared(&candidate, frame.rates, &mut self.knapsack) };
         let scale = if own { 1.0 } else { candidate.cost_scale };
-        let stay = self.options.price(frame.candidates.previous[i], frame.candidates.age_ms[i]);
+        let stay = self.options.price(frame.candidates.previous[i], || frame.age_ms(i));
         SharedClass { profile, weight: candidate.weight, scale, stay, current: 0 }
     }
 
@@ -163,8 +164,8 @@ impl Predictive {
     /// The optimum up to `budget` in `levels`, the dead band being above `ease`. Under steadiness `levels` are led there
     /// instead, and the outcome has their cost and benefit.
     fn solve(&mut self, frame: &Frame<'_>, budget: u64, ease: u64, levels: &mut [Level]) -> Outcome {
-        let Candidates { weight, place, census, previous, age_ms, .. } = frame.candidates;
-        let stay = |i: usize| self.options.price(previous[i], age_ms[i]);
+        let Candidates { weight, place, census, previous, .. } = frame.candidates;
+        let stay = |i: usize| self.options.price(previous[i], || frame.age_ms(i));
         let crowd = Crowd { weight, place, census, odd: &self.odd, stay };
         let Some(steadiness) = &self.options.steadiness else {
             let outcome = self.knapsack.solve_crowd(&crowd, budget, ease, |i| frame.key(i));
@@ -242,7 +243,7 @@ impl Selector for Predictive {
     /// the going rate without it.
     fn cause(&self, frame: &Frame<'_>, i: usize, level: Level) -> Cause {
         if let Some(steadiness) = self.options.steadiness {
-            let is_full = steadiness.is_full(frame.candidates.account_of(i));
+            let is_full = steadiness.is_full(frame.account(i));
             return match self.owed.binary_search(&(i as u32)) {
                 Ok(_) if is_full => Cause::Dwell,
                 Ok(_) => Cause::Hysteresis,
@@ -258,7 +259,7 @@ impl Selector for Predictive {
         };
         match candidates.previous[i] {
             Some(held) if held == level && finer.map(|(l, _)| l).any(pays) => {
-                if candidates.age_ms[i] < self.options.dwell_ms { Cause::Dwell } else { Cause::Hysteresis }
+                if frame.age_ms(i) < self.options.dwell_ms { Cause::Dwell } else { Cause::Hysteresis }
             }
             _ => Cause::Budget,
         }
@@ -299,7 +300,7 @@ fn open_accounts<F: Fn(usize) -> f32>(
         });
         match offers {
             Some(offers) => {
-                accounts.open((i as u32, frame.key(i)), best, offers, frame.candidates.account_of(i));
+                accounts.open((i as u32, frame.key(i)), best, offers, frame.account(i));
             }
             None => levels[i] = best,
         }

@@ -109,7 +109,7 @@ impl ScreenSizeOptions {
             }
         };
         match candidates.previous[i].filter(|&previous| allowed.contains(previous)) {
-            Some(previous) if candidates.age_ms[i] < self.dwell_ms => previous,
+            Some(previous) if frame.age_ms(i) < self.dwell_ms => previous,
             _ => wanted,
         }
     }
@@ -167,7 +167,7 @@ impl ScreenSizeOptions {
         let plainly = plain.level(frame, i, &frame.candidate(i), scale, height_px);
         let held = candidates.previous[i] == Some(level) && plainly < level;
         match held {
-            true if candidates.age_ms[i] < self.dwell_ms => Cause::Dwell,
+            true if frame.age_ms(i) < self.dwell_ms => Cause::Dwell,
             true => Cause::Hysteresis,
             false => Cause::Budget,
         }
