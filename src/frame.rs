@@ -178,6 +178,7 @@ impl PixelSum {
     const ROUND: f64 = 3.0 * (1u64 << 45) as f64;
 
     /// An area as it counts.
+    #[inline(always)]
     pub fn rounded(area_px2: f32) -> f64 {
         (f64::from(area_px2) + Self::ROUND) - Self::ROUND
     }

@@ -67,6 +67,7 @@
 //! # Modules, in the order of a frame
 //! | | |
 //! |---|---|
+//! | [`kernel`] | how loops over columns run: vector width, threads |
 //! | *vocabulary* | |
 //! | [`bounds`] | spheres and boxes |
 //! | [`view`] | cameras, frusta, and all screen-space maths |
@@ -98,8 +99,11 @@
 //!
 //! [`FrameReport`]: frame::FrameReport
 //! [`FrameReport::frame`]: frame::FrameReport::frame
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 #![warn(missing_docs)]
+
+// -- below everything: how loops run
+pub mod kernel;
 
 // -- vocabulary, each module after those it builds on
 pub mod bounds;

@@ -231,6 +231,7 @@ impl Block {
     };
 
     /// The bound in one lane.
+    #[inline(always)]
     pub fn sphere(&self, lane: usize) -> Sphere {
         Sphere::new(Vec3::new(self.x[lane], self.y[lane], self.z[lane]), self.radius[lane])
     }

@@ -315,13 +315,14 @@ impl Lens {
 
     /// Projected area of a sphere in square pixels, at most the viewport's; the whole viewport when the eye is inside.
     /// Free of branches and square roots, so that a loop over spheres can be vectorised.
+    #[inline(always)]
     pub fn area_px2(&self, sphere: &Sphere) -> f32 {
         let d = sphere.center - self.eye;
-        let distance2 = (d.x * d.x + d.y * d.y + d.z * d.z).max(self.near * self.near);
+        let distance2 = larger(d.x * d.x + d.y * d.y + d.z * d.z, self.near * self.near);
         let distance2 = if self.perspective { distance2 } else { 1.0 };
         // Finite, so that what is infinitely far is infinitely small however large it is.
-        let radius2 = (sphere.radius * sphere.radius).min(f32::MAX);
-        let area_px2 = (radius2 / distance2 * self.unit_px2).min(self.viewport_px2);
+        let radius2 = smaller(sphere.radius * sphere.radius, f32::MAX);
+        let area_px2 = smaller(radius2 / distance2 * self.unit_px2, self.viewport_px2);
         let inside = self.perspective & (distance2 <= radius2);
         if inside { self.viewport_px2 } else { area_px2 }
     }
@@ -344,6 +345,18 @@ impl Lens {
         let nearest = if self.perspective { (distance - radius).max(self.near) } else { 1.0 };
         self.scale_px / nearest
     }
+}
+
+/// The maximum; `b` where one is not a number. One instruction, which [`f32::max`] is not.
+#[inline(always)]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The minimum; `b` where one is not a number.
+#[inline(always)]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
 }
 
 /// The camera's axes in the world: the columns of the rotation matrix of the normalised quaternion, in scalar

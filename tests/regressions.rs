@@ -656,6 +656,7 @@ fn counterexample(select: &mut dyn Selector) -> SelectReport {
         timing,
         floor: 0.0,
         memory: &NoMemory,
+        threads: 1,
     };
     let mut levels = [Level::NOT_DRAWN; 2];
     select.select(&frame, &mut levels)

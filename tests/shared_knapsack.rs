@@ -396,7 +396,8 @@ proptest! {
             listed.classes.clone_from(&classes);
             let plain = listed.solve(budget, ease, |m| m as u128);
             let stay = |m: usize| scene.members[m].2;
-            let crowd = Crowd { weight: &weight, place: &place, census: &census, odd: &odd, stay };
+            let heaviest = weight.iter().copied().fold(0.0, f32::max);
+            let crowd = Crowd { weight: &weight, heaviest, place: &place, census: &census, odd: &odd, stay, threads: 1 };
             let outcome = crowded.solve_crowd(&crowd, budget, ease, |m| m as u128);
             let mut found = held.clone();
             crowded.changed().for_each(|(m, code)| found[m] = code);

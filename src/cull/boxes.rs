@@ -5,6 +5,7 @@ use glam::Vec3;
 use super::lanes::OpenTests;
 use super::tree::FAN_OUT;
 use crate::bounds::Aabb;
+use crate::kernel::{Kernel, run};
 use crate::view::{Frustum, Plane, SLACK};
 
 /// The boxes of eight siblings, column by column, so that they fill three cache lines and compilers turn loops over
@@ -43,16 +44,10 @@ impl Boxes {
     /// Tries the boxes against the planes in `open`: the arithmetic of [`Frustum::crossed`], eight boxes at a time. A
     /// box that is all of space crosses every plane.
     pub fn crossed(&self, frustum: &Frustum, open: OpenTests) -> Crossed {
-        let (center, half) = self.centers();
-        let mut outside = std::array::from_fn(|lane| u32::from(self.min[0][lane] > self.max[0][lane]));
-        let mut planes = [0; FAN_OUT];
-        for (i, plane) in frustum.planes.iter().enumerate().filter(|&(i, _)| open & (1 << i) != 0) {
-            split(plane, 1 << i, &center, &half, &mut outside, &mut planes);
-        }
-        let inside = outside.iter().enumerate().fold(0, |mask, (lane, &out)| mask | (1 - out) << lane);
-        Crossed { inside: inside as u8, planes }
+        run(Crossing { boxes: self, frustum, open })
     }
 
+    #[inline(always)]
     fn centers(&self) -> ([[f32; FAN_OUT]; 3], [[f32; FAN_OUT]; 3]) {
         let (mut center, mut half) = ([[0.0; FAN_OUT]; 3], [[0.0; FAN_OUT]; 3]);
         for axis in 0..3 {
@@ -66,8 +61,36 @@ impl Boxes {
     }
 }
 
+/// [`Boxes::crossed`].
+struct Crossing<'a> {
+    boxes: &'a Boxes,
+    frustum: &'a Frustum,
+    open: OpenTests,
+}
+
+impl Kernel for Crossing<'_> {
+    type Sum = Crossed;
+
+    #[inline(always)]
+    fn run(self) -> Crossed {
+        let [min, max] = [&self.boxes.min[0], &self.boxes.max[0]];
+        let (center, half) = self.boxes.centers();
+        let mut outside = [0; FAN_OUT];
+        for lane in 0..FAN_OUT {
+            outside[lane] = u32::from(min[lane] > max[lane]);
+        }
+        let mut planes = [0; FAN_OUT];
+        for (i, plane) in self.frustum.planes.iter().enumerate().filter(|&(i, _)| self.open & (1 << i) != 0) {
+            split(plane, 1 << i, &center, &half, &mut outside, &mut planes);
+        }
+        let inside = outside.iter().enumerate().fold(0, |mask, (lane, &out)| mask | (1 - out) << lane);
+        Crossed { inside: inside as u8, planes }
+    }
+}
+
 /// Notes which boxes are outside a plane, and which are not wholly inside. Comparisons with what is not a number say
 /// "neither".
+#[inline(always)]
 fn split(
     plane: &Plane,
     bit: u32,

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::value::{Floor, ValueFloor};
 use super::{CullOptions, CullReport, VisibleBlock};
+use crate::kernel::{Kernel, run};
 use crate::scene::{BLOCK, Block, Objects};
 use crate::view::{Lens, PLANES};
 
@@ -55,7 +56,7 @@ impl<'a> Cull<'a> {
         let block = &self.objects.blocks()[index];
         self.report.blocks_tested += 1;
         self.report.objects_tested += u64::from(live.count_ones());
-        let mut seen = live & in_view(block, self.lens, open);
+        let mut seen = live & run(InView { block, lens: self.lens, open });
         if seen != 0 && open & !ALL_PLANES != 0 {
             seen = self.within_limits(index, block, seen, open);
         }
@@ -130,16 +131,28 @@ fn select(mask: u16, is_so: impl Fn(usize) -> bool) -> u16 {
 
 /// The lanes that [`Frustum::sees`](crate::view::Frustum::sees), as far as the open planes can tell. Straight loops
 /// over the lanes, which compilers turn into vector code.
-fn in_view(block: &Block, lens: &Lens, open: OpenTests) -> u16 {
-    let mut inside = [1; BLOCK];
-    for (_, plane) in lens.frustum.planes.iter().enumerate().filter(|&(i, _)| open & (1 << i) != 0) {
-        let n = plane.normal;
-        for (lane, inside) in inside.iter_mut().enumerate() {
-            let along = n.x * block.x[lane] + n.y * block.y[lane] + n.z * block.z[lane];
-            *inside &= u32::from(along + plane.offset >= -block.radius[lane]);
+struct InView<'a> {
+    block: &'a Block,
+    lens: &'a Lens,
+    open: OpenTests,
+}
+
+impl Kernel for InView<'_> {
+    type Sum = u16;
+
+    #[inline(always)]
+    fn run(self) -> u16 {
+        let Self { block, lens, open } = self;
+        let mut inside = [1; BLOCK];
+        for (_, plane) in lens.frustum.planes.iter().enumerate().filter(|&(i, _)| open & (1 << i) != 0) {
+            let n = plane.normal;
+            for (lane, inside) in inside.iter_mut().enumerate() {
+                let along = n.x * block.x[lane] + n.y * block.y[lane] + n.z * block.z[lane];
+                *inside &= u32::from(along + plane.offset >= -block.radius[lane]);
+            }
         }
+        bits(&inside)
     }
-    bits(&inside)
 }
 
 /// The lanes whose projected diameter, at a bias of 1, is below `min_size_px`.
@@ -160,6 +173,7 @@ pub(super) fn distances(block: &Block, lens: &Lens) -> [f32; BLOCK] {
 }
 
 /// Bit per lane from a 0 or 1 per lane.
+#[inline(always)]
 pub(super) fn bits(lanes: &[u32; BLOCK]) -> u16 {
     lanes.iter().enumerate().fold(0, |mask, (lane, &bit)| mask | bit << lane) as u16
 }

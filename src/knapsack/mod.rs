@@ -62,9 +62,9 @@ pub use hull::{Step, compare_slopes, upper_hull, upper_hull_of};
 pub use instance::{Instance, InstanceError, Item};
 #[cfg(feature = "files")]
 pub use json::InstanceJsonError;
+pub(crate) use shared::{Columns, Hold, Units, opened, sift};
 pub use shared::{
     Crowd, OddClass, Offer, Outcome, Position, ProfileItem, Profiles, SharedClass, SharedKnapsack,
 };
-pub(crate) use shared::{Hold, Units, sift};
 pub use solution::Solution;
 pub use sum::FixedSum;

@@ -17,6 +17,7 @@ use glam::Vec3;
 
 use crate::cull::VisibleBlock;
 use crate::frame::{Candidate, Candidates, PixelSum, Row};
+use crate::kernel::{Divisible, Kernel, run_on};
 use crate::scene::{BLOCK, Block, Objects, Settings, lanes};
 use crate::table::Level;
 use crate::view::Lens;
@@ -40,19 +41,20 @@ pub fn cost_us(model: &CostModel, rates: &TableRates, candidate: &Candidate, lev
 }
 
 /// Appends the candidates of a group of one view without their details: weights and the sum of areas; the sizes too
-/// where they are asked for. The caller closes the run with [`Candidates::end_group`]. Candidates must not be detailed.
+/// where they are asked for. On so many threads where there are many objects (feature `rayon`). The caller closes the run with [`Candidates::end_group`]. Candidates must not be detailed.
 pub fn weigh(
     objects: &Objects,
     seen: &Seen,
     model: &BenefitModel,
     with_sizes: bool,
+    threads: usize,
     candidates: &mut Candidates,
 ) {
     let (first, first_row) = (candidates.len(), candidates.rows.len());
     candidates.push_blocks(seen.visible.iter().map(|v| (v.block, v.mask)));
     let Candidates { rows, weight, .. } = &mut *candidates;
     let (rows, weight) = (&rows[first_row..], &mut weight[first..]);
-    let weighed = Weighing { objects, lens: &seen.lens, model, rows, weight }.run();
+    let weighed = run_on(threads, Weighing { objects, lens: &seen.lens, model, rows, weight });
     candidates.pixels.add(weighed.pixels);
     candidates.heaviest = candidates.heaviest.max(weighed.heaviest);
     if with_sizes {
@@ -78,7 +80,9 @@ struct Weighed {
     heaviest: f32,
 }
 
-impl Weighing<'_> {
+impl Kernel for Weighing<'_> {
+    type Sum = Weighed;
+
     #[inline(always)]
     fn run(self) -> Weighed {
         let start = self.rows.first().map_or(0, |row| row.first) as usize;
@@ -113,6 +117,24 @@ impl Weighing<'_> {
     }
 }
 
+impl Divisible for Weighing<'_> {
+    fn len(&self) -> usize {
+        self.weight.len()
+    }
+
+    fn halves(self) -> [Self; 2] {
+        let start = self.rows.first().map_or(0, |row| row.first);
+        let (rows, other_rows) = self.rows.split_at(self.rows.len() / 2);
+        let at = other_rows.first().map_or(0, |row| row.first - start) as usize;
+        let (weight, other_weight) = self.weight.split_at_mut(at);
+        [Self { rows, weight, ..self }, Self { rows: other_rows, weight: other_weight, ..self }]
+    }
+
+    fn join([a, b]: [Weighed; 2]) -> Weighed {
+        Weighed { pixels: a.pixels + b.pixels, heaviest: a.heaviest.max(b.heaviest) }
+    }
+}
+
 /// The projected diameters of the lanes of `mask`, bias included, and of the others as they are.
 fn sizes_px(objects: &Objects, index: u32, lens: &Lens, mask: u16) -> [f32; BLOCK] {
     let block = &objects.blocks()[index as usize];
@@ -127,6 +149,7 @@ fn sizes_px(objects: &Objects, index: u32, lens: &Lens, mask: u16) -> [f32; BLOC
 }
 
 /// The areas of the lanes of `mask` as they count for the pixel stage, rounded so that their sum is exact.
+#[inline(always)]
 fn costly_areas(
     objects: &Objects,
     index: u32,

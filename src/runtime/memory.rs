@@ -1,6 +1,7 @@
 //! What is remembered of earlier frames, per view group and slot: sixteen slots to a block, as the objects are.
 
 use crate::frame::{Account, Cause, Change, GroupId, Memory, NO_PLACE, Row};
+use crate::kernel::{Divisible, Kernel, run_on};
 use crate::rate::TableRates;
 use crate::scene::{BLOCK, ObjectId, Objects, lanes};
 use crate::table::Level;
@@ -39,12 +40,8 @@ struct BlockAccounts {
 }
 
 impl BlockAccounts {
-    const EMPTY: Self = Self {
-        account: [Account { owed_ms: 0, drops: 0 }; BLOCK],
-        owing: 0,
-        owing_before: 0,
-        frame: 0,
-    };
+    const EMPTY: Self =
+        Self { account: [Account { owed_ms: 0, drops: 0 }; BLOCK], owing: 0, owing_before: 0, frame: 0 };
 
     /// What was owed at the end of a frame, the last one or the one before, and the drops.
     fn get(&self, lane: usize, frame: u32) -> Account {
@@ -206,11 +203,13 @@ impl GroupMemory {
         rows: &mut [Row],
         places: Places<'_>,
         recalled: Recalled<'_>,
+        threads: usize,
         changes: &mut Vec<Change>,
     ) {
         self.renew(rows, places);
         let (frame, blocks) = (self.frame, &mut self.blocks[..]);
-        self.stayed = Recalling { rows, frame, blocks, recalled }.run();
+        self.stayed =
+            run_on(threads, Recalling { rows: &mut *rows, frame, blocks, first_block: 0, recalled });
         self.rows.extend_from_slice(rows);
         if self.stayed != self.before.iter().map(|row| row.mask.count_ones()).sum::<u32>() {
             self.dismiss_leavers(places.objects, changes);
@@ -506,19 +505,23 @@ pub(super) struct Recalled<'a> {
 struct Recalling<'a> {
     rows: &'a mut [Row],
     frame: u32,
+    /// Those of the rows, and maybe others, from `first_block` on.
     blocks: &'a mut [BlockMemory],
+    first_block: usize,
     recalled: Recalled<'a>,
 }
 
-impl Recalling<'_> {
-    /// Returns how many are in view that were in view before.
+impl Kernel for Recalling<'_> {
+    /// How many are in view that were in view before.
+    type Sum = u32;
+
     #[inline(always)]
     fn run(self) -> u32 {
         let Recalled { previous, place, levels } = self.recalled;
         let start = self.rows.first().map_or(0, |row| row.first) as usize;
         let mut stayed = 0;
         for row in self.rows {
-            let memory = &mut self.blocks[row.block as usize];
+            let memory = &mut self.blocks[row.block as usize - self.first_block];
             row.known = if memory.frame + 1 == self.frame { memory.seen & row.mask } else { 0 };
             (memory.frame, memory.seen) = (self.frame, row.mask);
             stayed += row.known.count_ones();
@@ -537,6 +540,34 @@ impl Recalling<'_> {
             }
         }
         stayed
+    }
+}
+
+impl Divisible for Recalling<'_> {
+    fn len(&self) -> usize {
+        self.recalled.place.len()
+    }
+
+    fn halves(self) -> [Self; 2] {
+        let Self { rows, frame, blocks, first_block, recalled: Recalled { previous, place, levels } } = self;
+        let start = rows.first().map_or(0, |row| row.first);
+        let (rows, other_rows) = rows.split_at_mut(rows.len() / 2);
+        let (at, block) = other_rows
+            .first()
+            .map_or((0, first_block), |row| ((row.first - start) as usize, row.block as usize));
+        let (blocks, other_blocks) = blocks.split_at_mut(block - first_block);
+        let (previous, place, levels) =
+            (previous.split_at_mut(at), place.split_at_mut(at), levels.split_at_mut(at));
+        let recalled = Recalled { previous: previous.0, place: place.0, levels: levels.0 };
+        let other = Recalled { previous: previous.1, place: place.1, levels: levels.1 };
+        [
+            Self { rows, frame, blocks, first_block, recalled },
+            Self { rows: other_rows, frame, blocks: other_blocks, first_block: block, recalled: other },
+        ]
+    }
+
+    fn join([a, b]: [u32; 2]) -> u32 {
+        a + b
     }
 }
 
@@ -612,7 +643,7 @@ mod tests {
             let (mut previous, mut place, mut levels) = ([None], [NO_PLACE], [Level::NOT_DRAWN]);
             let recalled = Recalled { previous: &mut previous, place: &mut place, levels: &mut levels };
             memory.begin_frame(places, clock_ms);
-            memory.recall(&mut rows, places, recalled, &mut Vec::new());
+            memory.recall(&mut rows, places, recalled, 1, &mut Vec::new());
             (rows[0].known, previous[0])
         };
         assert_eq!(recall(&mut memory, 0.0), (0, None));

@@ -42,6 +42,10 @@ pub struct RuntimeOptions {
     pub transition: TransitionOptions,
     /// How measurements are learnt from.
     pub feedback: FeedbackOptions,
+    /// On how many threads, of the rayon pool that the caller of a frame is in, loops over many thousand objects run;
+    /// without the feature `rayon`, and where it is less than 2, on the caller's alone. Frames on several threads may
+    /// allocate; answers are the same.
+    pub threads: usize,
 }
 
 /// One camera of a frame.
@@ -219,7 +223,9 @@ impl Runtime {
 
     /// The last frame as the selector saw it.
     pub fn last_frame<'a>(&'a self, objects: &'a Objects) -> Frame<'a> {
-        frame_of(objects, &self.scratch.candidates, &self.rates, &self.feedback, &self.groups, &self.report)
+        let Self { rates, feedback, groups, report, .. } = self;
+        let frame = frame_of(objects, &self.scratch.candidates, rates, feedback, groups, report);
+        Frame { threads: self.options.threads, ..frame }
     }
 
     /// Forgets everything learnt and shown, as if no frame had been run; the next changes start from nothing. The next
@@ -284,7 +290,8 @@ impl Runtime {
                 rate(objects, &self.rates, &seen[..count], &self.options.benefit, cursors, candidates);
             } else {
                 let with_sizes = self.selector.needs() == Needs::Sizes;
-                weigh(objects, &seen[0], &self.options.benefit, with_sizes, candidates);
+                let RuntimeOptions { benefit, threads, .. } = &self.options;
+                weigh(objects, &seen[0], benefit, with_sizes, *threads, candidates);
             }
             candidates.end_group(group, seen[0].lens, count);
             first += count;
@@ -365,7 +372,7 @@ impl Runtime {
             place: &mut candidates.place[range.clone()],
             levels: &mut levels[range],
         };
-        memory.recall(&mut candidates.rows[rows], places, recalled, &mut self.changes);
+        memory.recall(&mut candidates.rows[rows], places, recalled, self.options.threads, &mut self.changes);
         candidates.census.iter_mut().zip(memory.census()).for_each(|(sum, &count)| *sum += count);
         dt_ms
     }
@@ -404,15 +411,10 @@ impl Runtime {
         self.report.budget = budget;
         self.report.fades_us = fades_us;
         let mut levels = std::mem::take(&mut self.scratch.levels);
-        let frame = frame_of(
-            objects,
-            &self.scratch.candidates,
-            &self.rates,
-            &self.feedback,
-            &self.groups,
-            &self.report,
-        );
-        self.report.select = self.selector.select(&frame, &mut levels);
+        let Self { rates, feedback, groups, report, selector, scratch, options, .. } = self;
+        let frame = frame_of(objects, &scratch.candidates, rates, feedback, groups, report);
+        let frame = Frame { threads: options.threads, ..frame };
+        report.select = selector.select(&frame, &mut levels);
         self.scratch.levels = levels;
     }
 
@@ -598,6 +600,7 @@ fn frame_of<'a>(
         timing: feedback.timing(),
         floor: report.floor,
         memory,
+        threads: 1,
     }
 }
 

@@ -46,6 +46,8 @@ pub struct Frame<'a> {
     pub floor: f64,
     /// What is remembered of earlier frames.
     pub memory: &'a dyn Memory,
+    /// How many threads the policy may use (feature `rayon`); they must not change what it chooses.
+    pub threads: usize,
 }
 
 impl Frame<'_> {

@@ -164,9 +164,10 @@ impl Predictive {
     /// The optimum up to `budget` in `levels`, the dead band being above `ease`. Under steadiness `levels` are led there
     /// instead, and the outcome has their cost and benefit.
     fn solve(&mut self, frame: &Frame<'_>, budget: u64, ease: u64, levels: &mut [Level]) -> Outcome {
-        let Candidates { weight, place, census, previous, .. } = frame.candidates;
+        let &Candidates { ref weight, heaviest, ref place, ref census, ref previous, .. } = frame.candidates;
         let stay = |i: usize| self.options.price(previous[i], || frame.age_ms(i));
-        let crowd = Crowd { weight, place, census, odd: &self.odd, stay };
+        let odd = &self.odd;
+        let crowd = Crowd { weight, heaviest, place, census, odd, stay, threads: frame.threads };
         let Some(steadiness) = &self.options.steadiness else {
             let outcome = self.knapsack.solve_crowd(&crowd, budget, ease, |i| frame.key(i));
             self.knapsack.changed().for_each(|(i, item)| levels[i] = Level(item));

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::Frame;
 use crate::frame::{Candidate, Candidates, PixelSum, SelectReport};
-use crate::knapsack::{FixedSum, Hold, Units, sift};
+use crate::knapsack::{Columns, FixedSum, Hold, Units, opened, sift};
 use crate::rate::{LevelRate, TableRates, cost_us};
 use crate::table::Level;
 
@@ -23,8 +23,8 @@ pub(super) struct Sweep {
     intervals: Vec<Interval>,
     /// Per level of all tables, and an open one.
     holds: Vec<Hold>,
-    /// Who is decided one by one.
-    opened: Vec<u32>,
+    /// A bit per candidate: it is decided one by one.
+    open: Vec<u16>,
     /// How many candidates with a place are at each level of all tables.
     census: Vec<u32>,
     odd: Odd,
@@ -68,24 +68,24 @@ impl Sweep {
         levels: &mut [Level],
         mut rule: impl FnMut(usize, &Candidate) -> Level,
     ) {
-        let mut worth = self.find_open(frame.candidates, range.clone());
-        for at in 0..self.opened.len() {
-            let i = range.start + self.opened[at] as usize;
+        let mut worth = self.find_open(frame, range.clone());
+        let open = std::mem::take(&mut self.open);
+        for i in opened(&open).map(|at| range.start + at) {
             let candidate = frame.candidate(i);
             levels[i] = rule(i, &candidate);
             worth.value += worth.of(candidate.weight, frame.rates.accuracy(candidate.table, levels[i]));
             self.count(frame, i, &candidate, levels[i]);
         }
+        self.open = open;
         self.benefit += worth.benefit();
     }
 
-    /// Lists who may not stay, counted from the start of `range`, and returns the benefit of the others.
-    fn find_open(&mut self, candidates: &Candidates, range: Range<usize>) -> Units {
-        let Candidates { size_px, weight, place, .. } = candidates;
-        let [size_px, weight] = [size_px, weight].map(|column| &column[range.clone()]);
-        let Self { holds, opened, .. } = self;
-        opened.clear();
-        sift(size_px, weight, &place[range], holds, [1.0; 2], |at| opened.push(at as u32))
+    /// Finds who may not stay, counted from the start of `range`, and returns the benefit of the others.
+    fn find_open(&mut self, frame: &Frame<'_>, range: Range<usize>) -> Units {
+        let &Candidates { ref size_px, ref weight, heaviest, ref place, .. } = frame.candidates;
+        let [size, weight] = [size_px, weight].map(|column| &column[range.clone()]);
+        let columns = Columns { size, weight, heaviest, place: &place[range], holds: &self.holds };
+        sift(columns, [1.0; 2], frame.threads, &mut self.open)
     }
 
     /// Counts a candidate at the level that has been chosen for it one by one.

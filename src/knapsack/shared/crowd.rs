@@ -7,13 +7,15 @@
 
 use super::certificate::{NEAR, Sums, best};
 use super::class::Class;
-use super::sift::{Units, sift};
+use super::sift::{Columns, Units, opened, sift};
 use super::{Critical, Outcome, Profiles, SharedClass, SharedKnapsack, Survey};
 
 /// The classes of a call, column by column.
 pub struct Crowd<'a, F> {
     /// Factor on the profile's values, finite and ≥ 0.
     pub weight: &'a [f32],
+    /// No weight is greater.
+    pub heaviest: f32,
     /// The number of the item that a class of scale 1 holds, among the items of all profiles in the order in which they
     /// were pushed. Any number beyond the census for an odd class.
     pub place: &'a [u32],
@@ -23,6 +25,8 @@ pub struct Crowd<'a, F> {
     pub odd: &'a [OddClass],
     /// Price of switching of a class, in 0…1 (exclusive).
     pub stay: F,
+    /// How many threads look through the columns (feature `rayon`); answers are the same.
+    pub threads: usize,
 }
 
 /// A class of a crowd that holds no item, or has a scale or a profile of its own.
@@ -351,6 +355,7 @@ impl SharedKnapsack {
         [&mut self.opened, &mut self.owners].into_iter().for_each(|list| make_room(list, classes));
         [&mut self.choice, &mut self.chosen].into_iter().for_each(|list| make_room(list, classes));
         make_room(&mut self.classes, classes);
+        make_room(&mut self.open, classes / 16 + 1);
         make_room(&mut self.blocked, classes);
         make_room(&mut self.undecided, classes);
     }
@@ -359,30 +364,29 @@ impl SharedKnapsack {
     fn sift<F: Fn(usize) -> f32>(&mut self, crowd: &Crowd<'_, F>, bracket: [f32; 2]) -> Survey {
         let [low, high] = bracket;
         self.make_room(crowd.weight.len());
-        let Self { profiles, classes, owners, aside, opened, .. } = self;
+        let Self { profiles, classes, owners, aside, open, .. } = self;
         classes.clear();
         owners.clear();
-        opened.clear();
         aside.begin(profiles, crowd);
-        let holds = profiles.holds();
-        let open = |i: usize| opened.push(i as u32);
-        aside.benefit = sift(crowd.weight, crowd.weight, crowd.place, holds, bracket, open);
+        let &Crowd { weight, heaviest, place, .. } = crowd;
+        let columns = Columns { size: weight, weight, heaviest, place, holds: profiles.holds() };
+        aside.benefit = sift(columns, bracket, crowd.threads, open);
         let mut read = crowd.reader(profiles);
-        for &i in opened.iter() {
-            let shared = read(i as usize);
+        for i in opened(open) {
+            let shared = read(i);
             let class = Class::new(profiles, &shared);
             let above = class.reach(class.held(), high);
-            let held = crowd.holds_item(i as usize).then(|| profiles.code(crowd.place[i as usize]));
+            let held = crowd.holds_item(i).then(|| profiles.code(crowd.place[i]));
             if held.is_some() {
                 aside.dismiss(&class);
             }
             if class.reach(above, low) == above {
-                let decided = Decided { at: i, class: shared, position: above, listed: false };
+                let decided = Decided { at: i as u32, class: shared, position: above, listed: false };
                 aside.decide(decided, &class, held, bracket);
             } else {
                 classes.push(shared);
-                owners.push(i);
-                aside.mark(i as usize);
+                owners.push(i as u32);
+                aside.mark(i);
             }
         }
         drop(read);

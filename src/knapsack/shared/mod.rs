@@ -22,7 +22,7 @@ mod sift;
 pub use certificate::Outcome;
 pub use crowd::{Crowd, OddClass};
 pub use profiles::{Offer, Position, ProfileItem, Profiles};
-pub(crate) use sift::{Hold, Units, sift};
+pub(crate) use sift::{Columns, Hold, Units, opened, sift};
 
 use certificate::Sums;
 use class::{Class, scaled};
@@ -67,6 +67,8 @@ pub struct SharedKnapsack {
     /// nothing.
     owners: Vec<u32>,
     aside: Aside,
+    /// A bit per class of the crowd: it is not settled.
+    open: Vec<u16>,
     opened: Vec<u32>,
     histogram: Vec<u64>,
     rival: Vec<u8>,

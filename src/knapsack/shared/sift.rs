@@ -6,6 +6,8 @@
 
 use glam::{Mat4, Vec4};
 
+use crate::kernel::{Divisible, Kernel, run_on};
+
 /// When a class holds an item, and what that is worth to a class of weight 1. A row of four numbers, so that four classes
 /// are turned into columns by a transposition:
 /// - *keep*: the class keeps the step to the item while its weight is at least λ times this;
@@ -76,46 +78,98 @@ struct Lanes {
     least: [f64; LANES],
 }
 
-/// Finds the classes that are not settled for every λ of the bracket, tells `open` of each, and returns the benefit of
-/// those that are, in a unit that follows from the heaviest class. The last of `holds` is open. What `holds` are about is
-/// the `size` of a class: its weight, or another number.
-pub(crate) fn sift(
-    size: &[f32],
-    weight: &[f32],
-    place: &[u32],
-    holds: &[Hold],
+/// The columns of the classes that are to be looked at. What `holds` are about is the `size` of a class: its weight, or
+/// another number. The last of `holds` is open.
+#[derive(Clone, Copy)]
+pub(crate) struct Columns<'a> {
+    pub size: &'a [f32],
+    pub weight: &'a [f32],
+    /// No weight is greater.
+    pub heaviest: f32,
+    pub place: &'a [u32],
+    pub holds: &'a [Hold],
+}
+
+/// Finds the classes that are not settled for every λ of the bracket, a bit in `open` for each, and returns the benefit of
+/// those that are, in a unit that follows from the heaviest class.
+pub(crate) fn sift(columns: Columns<'_>, bracket: [f32; 2], threads: usize, open: &mut Vec<u16>) -> Units {
+    open.resize(columns.weight.len().div_ceil(LANES), 0);
+    let unit = unit_for(columns.heaviest);
+    run_on(threads, Sift { columns, bracket, unit, open })
+}
+
+/// The classes that a bit of `open` stands for, ascending.
+pub(crate) fn opened(open: &[u16]) -> impl Iterator<Item = usize> + '_ {
+    open.iter().enumerate().filter(|&(_, &bits)| bits != 0).flat_map(|(at, &bits)| {
+        (0..LANES).filter(move |lane| bits & (1 << lane) != 0).map(move |lane| at * LANES + lane)
+    })
+}
+
+struct Sift<'a> {
+    columns: Columns<'a>,
     bracket: [f32; 2],
-    mut open: impl FnMut(usize),
-) -> Units {
-    let mut settled = Units { unit: unit_for(heaviest(weight)), ..Units::default() };
-    let rounding = rounding(settled.unit);
-    let mut sums = Lanes { value: [0.0; LANES], least: [0.0; LANES] };
-    let mut told = |at: usize, mut opened: u16| {
-        while opened != 0 {
-            open(at * LANES + opened.trailing_zeros() as usize);
-            opened &= opened - 1;
+    unit: f64,
+    open: &'a mut [u16],
+}
+
+impl Kernel for Sift<'_> {
+    type Sum = Units;
+
+    #[inline(always)]
+    fn run(self) -> Units {
+        let Columns { size, weight, place, holds, .. } = self.columns;
+        let mut settled = Units { unit: self.unit, ..Units::default() };
+        let rounding = rounding(settled.unit);
+        let mut sums = Lanes { value: [0.0; LANES], least: [0.0; LANES] };
+        let (sizes, last_sizes) = size.as_chunks::<LANES>();
+        let (weights, last_weights) = weight.as_chunks::<LANES>();
+        let (places, last_places) = place.as_chunks::<LANES>();
+        let chunks = sizes.iter().zip(weights).zip(places).zip(&mut *self.open).enumerate();
+        for (at, (((size, weight), place), open)) in chunks {
+            *open = !sift_lanes(size, weight, place, holds, self.bracket, rounding, &mut sums);
+            if at % CARRY_EVERY == CARRY_EVERY - 1 {
+                carry(&mut sums, &mut settled);
+            }
         }
-    };
-    let (sizes, last_sizes) = size.as_chunks::<LANES>();
-    let (weights, last_weights) = weight.as_chunks::<LANES>();
-    let (places, last_places) = place.as_chunks::<LANES>();
-    for (at, ((size, weight), place)) in sizes.iter().zip(weights).zip(places).enumerate() {
-        told(at, !sift_lanes(size, weight, place, holds, bracket, rounding, &mut sums));
-        if at % CARRY_EVERY == CARRY_EVERY - 1 {
-            carry(&mut sums, &mut settled);
+        if let Some(open) = self.open.get_mut(weights.len()) {
+            let (mut size, mut weight, mut place) = ([0.0; LANES], [0.0; LANES], [u32::MAX; LANES]);
+            size[..last_sizes.len()].copy_from_slice(last_sizes);
+            weight[..last_weights.len()].copy_from_slice(last_weights);
+            place[..last_places.len()].copy_from_slice(last_places);
+            let opened = !sift_lanes(&size, &weight, &place, holds, self.bracket, rounding, &mut sums);
+            *open = opened & ((1u32 << last_weights.len()) - 1) as u16;
         }
+        carry(&mut sums, &mut settled);
+        settled
     }
-    let (mut size, mut weight, mut place) = ([0.0; LANES], [0.0; LANES], [u32::MAX; LANES]);
-    size[..last_sizes.len()].copy_from_slice(last_sizes);
-    weight[..last_weights.len()].copy_from_slice(last_weights);
-    place[..last_places.len()].copy_from_slice(last_places);
-    let opened = !sift_lanes(&size, &weight, &place, holds, bracket, rounding, &mut sums);
-    told(weights.len(), opened & ((1u32 << last_weights.len()) - 1) as u16);
-    carry(&mut sums, &mut settled);
-    settled
+}
+
+impl Divisible for Sift<'_> {
+    fn len(&self) -> usize {
+        self.columns.weight.len()
+    }
+
+    fn halves(self) -> [Self; 2] {
+        let Self { columns, bracket, unit, open } = self;
+        let chunks = open.len() / 2;
+        let (open, other_open) = open.split_at_mut(chunks);
+        let [size, weight] = [columns.size, columns.weight].map(|column| column.split_at(chunks * LANES));
+        let place = columns.place.split_at(chunks * LANES);
+        let first = Columns { size: size.0, weight: weight.0, place: place.0, ..columns };
+        let second = Columns { size: size.1, weight: weight.1, place: place.1, ..columns };
+        [
+            Self { columns: first, bracket, unit, open },
+            Self { columns: second, bracket, unit, open: other_open },
+        ]
+    }
+
+    fn join([a, b]: [Units; 2]) -> Units {
+        Units { value: a.value + b.value, least: a.least + b.least, unit: a.unit }
+    }
 }
 
 /// One chunk: which lanes are settled; their benefit goes into the sums.
+#[inline(always)]
 fn sift_lanes(
     size: &[f32; LANES],
     weight: &[f32; LANES],
@@ -139,6 +193,7 @@ fn sift_lanes(
 }
 
 /// The rows of a chunk's items, as columns.
+#[inline(always)]
 fn columns(place: &[u32; LANES], holds: &[Hold]) -> [[f32; LANES]; 4] {
     let last = holds.len() - 1;
     let row = |place: u32| holds[(place as usize).min(last)].0;
@@ -155,10 +210,13 @@ fn columns(place: &[u32; LANES], holds: &[Hold]) -> [[f32; LANES]; 4] {
     columns
 }
 
+#[inline(always)]
 fn product(weight: f32, value: f32) -> f64 {
     f64::from(weight) * f64::from(value)
 }
 
+#[cold]
+#[inline(never)]
 fn carry(sums: &mut Lanes, settled: &mut Units) {
     settled.value += sums.value.iter().map(|sum| i128::from((sum / settled.unit) as i64)).sum::<i128>();
     settled.least += sums.least.iter().map(|sum| i128::from((sum / settled.unit) as i64)).sum::<i128>();
@@ -172,16 +230,7 @@ fn unit_for(heaviest: f32) -> f64 {
 }
 
 /// Adding and subtracting this rounds to whole units.
+#[inline(always)]
 fn rounding(unit: f64) -> f64 {
     unit * 1.5 * (1u64 << 52) as f64
-}
-
-fn heaviest(weight: &[f32]) -> f32 {
-    let mut most = [0.0f32; LANES];
-    for chunk in weight.chunks(LANES) {
-        for (most, &w) in most.iter_mut().zip(chunk) {
-            *most = if w > *most { w } else { *most };
-        }
-    }
-    most.into_iter().fold(0.0, f32::max)
 }
