@@ -95,21 +95,27 @@ pub(crate) fn run<K: Kernel>(kernel: K) -> K::Sum {
     }
 }
 
+/// Fewer objects are not worth another thread.
+const PART: usize = 1 << 14;
+
 /// Runs a kernel on so many threads of the pool that the caller is in; on the caller's alone without the feature `rayon`.
 pub(crate) fn run_on<K: Divisible>(threads: usize, kernel: K) -> K::Sum {
-    #[cfg(feature = "rayon")]
-    if threads > 1 && kernel.len() >= 2 * PART {
-        let ([a, b], half) = (kernel.halves(), threads.div_ceil(2));
-        let (a, b) = rayon::join(|| run_on(half, a), || run_on(threads - half, b));
-        return K::join([a, b]);
+    if threads < 2 || kernel.len() < 2 * PART {
+        return run(kernel);
     }
-    let _ = threads;
-    run(kernel)
+    let ([first, second], half) = (kernel.halves(), threads / 2);
+    K::join(both(|| run_on(threads - half, first), || run_on(half, second)))
 }
 
-/// Fewer objects are not worth another thread.
 #[cfg(feature = "rayon")]
-const PART: usize = 1 << 14;
+fn both<T: Send>(first: impl FnOnce() -> T + Send, second: impl FnOnce() -> T + Send) -> [T; 2] {
+    rayon::join(first, second).into()
+}
+
+#[cfg(not(feature = "rayon"))]
+fn both<T>(first: impl FnOnce() -> T, second: impl FnOnce() -> T) -> [T; 2] {
+    [first(), second()]
+}
 
 #[cfg(target_arch = "x86_64")]
 fn has_avx2() -> bool {

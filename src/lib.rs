@@ -11,7 +11,8 @@
 //! 4. A small surface and few dependencies; everything but the frame loop is behind a feature.
 //!
 //! It is a library, not an engine: it draws nothing, starts no thread, reads no clock and owns no world. (The one
-//! exception is `sim`, which is no part of the frame loop and uses as many threads as it is told to.)
+//! exception is `sim`, which is no part of the frame loop and uses as many threads as it is told to. A frame that is
+//! told to use several takes them from the caller's rayon pool.)
 //!
 //! # A frame
 //! ```text
@@ -90,7 +91,8 @@
 //!
 //! # Features
 //! `bvh` (default) arranges objects by a hierarchy that obvhs builds, instead of along a Morton curve: no answer
-//! changes. `hecs` (default), `serde`, `files`, `sim` and `cli` (the `lod` command) add what their names say.
+//! changes. `rayon` lets a frame use several threads ([`RuntimeOptions::threads`]): no answer changes either. `hecs`
+//! (default), `serde`, `files`, `sim` and `cli` (the `lod` command) add what their names say.
 //!
 //! # Errors and panics
 //! Errors come at the doors alone (tables, objects, options, files), and name the thing and the rule it breaks. A frame

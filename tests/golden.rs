@@ -5,14 +5,19 @@
 //! read the new hashes off its message, and say in the commit why decisions changed.
 #![cfg(feature = "sim")]
 
-use glam::Vec2;
+use glam::{Quat, Vec2, Vec3};
 use lod_budget::frame::{FrameTime, GroupId};
+use lod_budget::kernel::{Width, limit_width, width};
 use lod_budget::runtime::{FrameInput, Runtime, RuntimeOptions, ViewInput};
+use lod_budget::scene::{BLOCK, Objects};
 use lod_budget::select::{
     FunkhouserSequin, Predictive, PredictiveOptions, Reactive, ReactiveOptions, ScreenSize, Selector,
 };
-use lod_budget::sim::generate::Recipe;
+use lod_budget::sim::generate::{Recipe, scatter};
 use lod_budget::view::{Projection, View, Window};
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_pcg::Pcg32;
 
 const FRAMES: usize = 150;
 
@@ -43,15 +48,18 @@ fn decisions(recipe: Recipe, selector: Box<dyn Selector>, budget_us: f64) -> u64
             .frame(&mut objects, &FrameInput { measured: known, ..FrameInput::new(&views, budget_us) });
         let model_us = report.select.cost_us;
         times.push(FrameTime::busy(report.frame, (model_us * 1.1) as f32));
-        let mut shown: Vec<(u64, u8)> = runtime
-            .shown_slots(GroupId(0))
-            .filter_map(|(slot, shown)| Some((objects.id_of(slot)?.0, shown.level.0)))
-            .collect();
-        shown.sort_unstable();
-        hash =
-            shown.iter().fold(mix(hash, k as u64), |hash, &(id, level)| mix(mix(hash, id), u64::from(level)));
+        hash = mix_shown(mix(hash, k as u64), &runtime, &objects);
     }
     hash
+}
+
+/// Mixes in the level of every object in view.
+fn mix_shown(hash: u64, runtime: &Runtime, objects: &Objects) -> u64 {
+    let shown = runtime.shown_slots(GroupId(0));
+    let mut levels: Vec<(u64, u8)> =
+        shown.filter_map(|(slot, shown)| Some((objects.id_of(slot)?.0, shown.level.0))).collect();
+    levels.sort_unstable();
+    levels.iter().fold(hash, |hash, &(id, level)| mix(mix(hash, id), u64::from(level)))
 }
 
 fn policies() -> [(&'static str, Box<dyn Selector>); 5] {
@@ -77,6 +85,61 @@ fn decisions_along_the_bundled_paths_are_the_golden_ones() {
         }
     }
     assert_eq!(found, GOLDEN, "found {found:#x?}");
+}
+
+/// So many objects that the loops over them are cut in eight.
+const CROWD: usize = 150_000;
+
+/// The same objects, inserted in an order of their own.
+fn shuffled(objects: &Objects, seed: u64) -> Objects {
+    let slots = 0..objects.blocks().len() * BLOCK;
+    let mut ids: Vec<_> = slots.filter_map(|slot| objects.id_of(slot)).collect();
+    ids.shuffle(&mut Pcg32::seed_from_u64(seed));
+    let mut again = Objects::new();
+    objects.tables().iter().for_each(|table| {
+        again.add_table(table.clone()).expect("a good table");
+    });
+    let all = ids.into_iter().filter_map(|id| objects.get(id));
+    all.for_each(|object| again.insert(object).expect("a new id"));
+    again
+}
+
+/// The levels of a crowd in a few frames of a moving camera that turns around once.
+fn crowd_decisions(mut objects: Objects, selector: Box<dyn Selector>, threads: usize) -> u64 {
+    let options = RuntimeOptions { threads, ..RuntimeOptions::default() };
+    let mut runtime = Runtime::new(options, selector).expect("good options");
+    let spheres = objects.blocks().iter().flat_map(|b| (0..BLOCK).map(|lane| b.sphere(lane).center.length()));
+    let radius = spheres.fold(0.0, f32::max);
+    let mut hash = 0xcbf2_9ce4_8422_2325;
+    for k in 0..8 {
+        let (eye, far) = (Vec3::new(k as f32, 100.0, radius * 1.9), f32::INFINITY);
+        let rotation = if k == 5 { Quat::from_xyzw(0.0, 1.0, 0.0, 0.0) } else { Quat::IDENTITY };
+        let views = [ViewInput::new(View { far, ..camera() }.at(eye, rotation), 0)];
+        runtime.frame(&mut objects, &FrameInput::new(&views, 10.0 * CROWD as f64));
+        hash = mix_shown(hash, &runtime, &objects);
+    }
+    hash
+}
+
+#[test]
+fn neither_width_nor_threads_nor_the_order_of_insertion_change_a_decision() {
+    let objects = scatter(CROWD, 7).to_objects().expect("a good scene");
+    for (policy, selector) in policies().into_iter().filter(|(name, _)| *name != "funkhouser-sequin") {
+        let of = |objects: Objects| crowd_decisions(objects, selector.clone(), 1);
+        limit_width(Width::Compiled);
+        let expected = of(shuffled(&objects, 0));
+        for widest in Width::ALL.into_iter().filter(|w| w.is_here()) {
+            assert_eq!(limit_width(widest), widest);
+            assert_eq!(of(shuffled(&objects, 1)), expected, "{policy}, {widest:?}");
+        }
+        for threads in [2, 8] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            let (objects, selector) = (shuffled(&objects, 2), selector.clone());
+            let found = pool.install(move || crowd_decisions(objects, selector, threads));
+            assert_eq!(found, expected, "{policy}, {threads} threads");
+        }
+        assert_eq!(limit_width(Width::Avx512), width());
+    }
 }
 
 const GOLDEN: [(&str, &str, u64); 15] = [
