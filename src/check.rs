@@ -331,7 +331,7 @@ impl Replay {
             let now: BTreeSet<ObjectId> = range.clone().map(|i| who(frame, i).1).collect();
             let before = self.seen.insert(group.group, now).unwrap_or_default();
             for i in range {
-                let (remembered, at) = (frame.candidates.previous[i], who(frame, i));
+                let (remembered, at) = (frame.candidates.previous(i), who(frame, i));
                 let rule = "what was in view, and nothing else, is remembered";
                 hold_of(at, remembered.is_some() == before.contains(&at.1), rule, || {
                     format!("{remembered:?}")

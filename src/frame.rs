@@ -50,8 +50,8 @@ pub struct Candidates {
     pub weight: Vec<f32>,
     /// The heaviest weight; 0 where there is no candidate.
     pub heaviest: f32,
-    /// What was wanted in the last frame; `None` for an object that has just come into view.
-    pub previous: Vec<Option<Level>>,
+    /// See [`Candidates::previous`]; [`NEWCOMER`] for an object that has just come into view.
+    pub(crate) held: Vec<Level>,
     /// Where the level that was wanted in the last frame stands among the levels of all tables
     /// ([`TableRates::index`](crate::rate::TableRates::index)), of a candidate that may choose among all levels of its
     /// table and counts once. [`NO_PLACE`] for any other, and for one that has just come into view.
@@ -130,6 +130,9 @@ impl Memory for NoMemory {
 
 /// See [`Candidates::place`].
 pub const NO_PLACE: u32 = u32::MAX;
+
+/// No table has so many levels.
+pub(crate) const NEWCOMER: Level = Level(u8::MAX - 1);
 
 /// The candidates of one group in one block of objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -232,7 +235,7 @@ impl Candidates {
     /// Concludes a list.
     pub(crate) fn end(&mut self) {
         self.weight.truncate(self.len);
-        self.previous.truncate(self.len);
+        self.held.truncate(self.len);
         self.place.truncate(self.len);
     }
 
@@ -247,7 +250,7 @@ impl Candidates {
 
     /// Makes the columns of memory as long as the others. They are yet to be written.
     pub(crate) fn make_room_for_memory(&mut self) {
-        self.previous.resize(self.len, None);
+        self.held.resize(self.len, NEWCOMER);
         self.place.resize(self.len, NO_PLACE);
     }
 
@@ -308,9 +311,14 @@ impl Candidates {
 
     /// Gives the candidate that was pushed last no memory of earlier frames.
     fn forget_memory(&mut self) {
-        self.previous.truncate(self.len - 1);
+        self.held.truncate(self.len - 1);
         self.place.truncate(self.len - 1);
         self.make_room_for_memory();
+    }
+
+    /// What was wanted of candidate `i` in the last frame; `None` for an object that has just come into view.
+    pub fn previous(&self, i: usize) -> Option<Level> {
+        Some(self.held[i]).filter(|&level| level != NEWCOMER)
     }
 
     /// The slot of candidate `i`. O(1) of detailed ones, else O(log rows).

@@ -39,7 +39,7 @@ impl fmt::Display for Level {
 }
 
 /// The most levels that a table may have; one value of [`Level`] is kept for "not drawn".
-pub const MAX_LEVELS: usize = 255;
+pub const MAX_LEVELS: usize = 254;
 
 /// What one level of an object costs to draw, and how true it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -167,7 +167,7 @@ fn broken_rule(bounds: &Sphere, levels: &[LevelRecord]) -> Option<(Option<Level>
         return Some((None, "it must have at least one level"));
     }
     if levels.len() > MAX_LEVELS {
-        return Some((None, "it must have at most 255 levels"));
+        return Some((None, "it must have at most 254 levels"));
     }
     levels.iter().enumerate().find_map(|(i, l)| broken_level(l).map(|rule| (Some(Level(i as u8)), rule)))
 }
@@ -261,7 +261,7 @@ mod tests {
             rule_of(vec![good, bad]),
             "LOD table 'chair', level 1: error must be finite and not negative"
         );
-        assert_eq!(rule_of(vec![good; 256]), "LOD table 'chair': it must have at most 255 levels");
+        assert_eq!(rule_of(vec![good; 256]), "LOD table 'chair': it must have at most 254 levels");
         let bad = LevelRecord { accuracy: 1.5, ..good };
         assert_eq!(rule_of(vec![bad]), "LOD table 'chair', level 0: accuracy must be between 0 and 1");
         let flat = LodTable::new("dot", Sphere::default(), vec![good]);

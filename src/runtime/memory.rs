@@ -1,6 +1,6 @@
 //! What is remembered of earlier frames, per view group and slot: sixteen slots to a block, as the objects are.
 
-use crate::frame::{Account, Cause, Change, GroupId, Memory, NO_PLACE, Row};
+use crate::frame::{Account, Cause, Change, GroupId, Memory, NEWCOMER, NO_PLACE, Row};
 use crate::kernel::{Divisible, Kernel, run_on};
 use crate::rate::TableRates;
 use crate::scene::{BLOCK, ObjectId, Objects, lanes};
@@ -496,7 +496,7 @@ struct Moved {
 
 /// Where what is recalled of candidates goes: columns of theirs.
 pub(super) struct Recalled<'a> {
-    pub previous: &'a mut [Option<Level>],
+    pub held: &'a mut [Level],
     pub place: &'a mut [u32],
     pub levels: &'a mut [Level],
 }
@@ -517,7 +517,7 @@ impl Kernel for Recalling<'_> {
 
     #[inline(always)]
     fn run(self) -> u32 {
-        let Recalled { previous, place, levels } = self.recalled;
+        let Recalled { held, place, levels } = self.recalled;
         let start = self.rows.first().map_or(0, |row| row.first) as usize;
         let mut stayed = 0;
         for row in self.rows {
@@ -529,13 +529,13 @@ impl Kernel for Recalling<'_> {
             if row.known == u16::MAX {
                 place[at..at + BLOCK].copy_from_slice(&memory.place);
                 levels[at..at + BLOCK].copy_from_slice(&memory.wanted);
-                previous[at..at + BLOCK].copy_from_slice(&memory.wanted.map(Some));
+                held[at..at + BLOCK].copy_from_slice(&memory.wanted);
             } else {
                 for (at, lane) in (at..).zip(lanes(row.mask)) {
                     let known = row.known & (1 << lane) != 0;
                     place[at] = if known { memory.place[lane] } else { NO_PLACE };
                     levels[at] = if known { memory.wanted[lane] } else { Level::NOT_DRAWN };
-                    previous[at] = known.then_some(memory.wanted[lane]);
+                    held[at] = if known { memory.wanted[lane] } else { NEWCOMER };
                 }
             }
         }
@@ -549,17 +549,16 @@ impl Divisible for Recalling<'_> {
     }
 
     fn halves(self) -> [Self; 2] {
-        let Self { rows, frame, blocks, first_block, recalled: Recalled { previous, place, levels } } = self;
+        let Self { rows, frame, blocks, first_block, recalled: Recalled { held, place, levels } } = self;
         let start = rows.first().map_or(0, |row| row.first);
         let (rows, other_rows) = rows.split_at_mut(rows.len() / 2);
         let (at, block) = other_rows
             .first()
             .map_or((0, first_block), |row| ((row.first - start) as usize, row.block as usize));
         let (blocks, other_blocks) = blocks.split_at_mut(block - first_block);
-        let (previous, place, levels) =
-            (previous.split_at_mut(at), place.split_at_mut(at), levels.split_at_mut(at));
-        let recalled = Recalled { previous: previous.0, place: place.0, levels: levels.0 };
-        let other = Recalled { previous: previous.1, place: place.1, levels: levels.1 };
+        let (held, place, levels) = (held.split_at_mut(at), place.split_at_mut(at), levels.split_at_mut(at));
+        let recalled = Recalled { held: held.0, place: place.0, levels: levels.0 };
+        let other = Recalled { held: held.1, place: place.1, levels: levels.1 };
         [
             Self { rows, frame, blocks, first_block, recalled },
             Self { rows: other_rows, frame, blocks: other_blocks, first_block: block, recalled: other },
@@ -640,14 +639,14 @@ mod tests {
         let mut memory = GroupMemory::new(GroupId(0));
         let recall = |memory: &mut GroupMemory, clock_ms: f64| {
             let mut rows = [Row { block: 0, mask: 1, known: 0, first: 0 }];
-            let (mut previous, mut place, mut levels) = ([None], [NO_PLACE], [Level::NOT_DRAWN]);
-            let recalled = Recalled { previous: &mut previous, place: &mut place, levels: &mut levels };
+            let (mut held, mut place, mut levels) = ([NEWCOMER], [NO_PLACE], [Level::NOT_DRAWN]);
+            let recalled = Recalled { held: &mut held, place: &mut place, levels: &mut levels };
             memory.begin_frame(places, clock_ms);
             memory.recall(&mut rows, places, recalled, 1, &mut Vec::new());
-            (rows[0].known, previous[0])
+            (rows[0].known, held[0])
         };
-        assert_eq!(recall(&mut memory, 0.0), (0, None));
+        assert_eq!(recall(&mut memory, 0.0), (0, NEWCOMER));
         memory.enter(0, Level::FINEST, NO_PLACE);
-        assert_eq!(recall(&mut memory, 16.0), (1, Some(Level::FINEST)));
+        assert_eq!(recall(&mut memory, 16.0), (1, Level::FINEST));
     }
 }

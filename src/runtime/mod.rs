@@ -368,7 +368,7 @@ impl Runtime {
             memory.keep_accounts();
         }
         let recalled = Recalled {
-            previous: &mut candidates.previous[range.clone()],
+            held: &mut candidates.held[range.clone()],
             place: &mut candidates.place[range.clone()],
             levels: &mut levels[range],
         };
@@ -442,12 +442,12 @@ impl Runtime {
         let range = candidates.run(run);
         news.clear();
         news.extend(unsteady.iter().filter(|i| range.contains(i)));
-        let changed = |i: &usize| candidates.previous[*i] != Some(levels[*i]);
+        let changed = |i: &usize| candidates.held[*i] != levels[*i];
         for start in range.clone().step_by(BLOCK) {
             let chunk = start..(start + BLOCK).min(range.end);
             // Most chunks hold nothing new, and comparing all of one takes a few instructions.
-            let pairs = candidates.previous[chunk.clone()].iter().zip(&levels[chunk.clone()]);
-            if pairs.fold(false, |any, (previous, &level)| any | (*previous != Some(level))) {
+            let pairs = candidates.held[chunk.clone()].iter().zip(&levels[chunk.clone()]);
+            if pairs.fold(0, |differs, (held, level)| differs | (held.0 ^ level.0)) != 0 {
                 news.extend(chunk.filter(changed));
             }
         }
@@ -464,7 +464,7 @@ impl Runtime {
         self.scratch.requests.clear();
         for &i in &news {
             let Scratch { candidates, levels, .. } = &self.scratch;
-            let (slot, previous, wanted) = (candidates.slot_of(i), candidates.previous[i], levels[i]);
+            let (slot, previous, wanted) = (candidates.slot_of(i), candidates.previous(i), levels[i]);
             let place = Places { objects, rates: &self.rates, once }.of(slot as usize, wanted);
             let memory = self.groups.of(group);
             match previous {

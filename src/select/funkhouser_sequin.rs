@@ -51,7 +51,7 @@ impl FunkhouserSequin {
         self.lower.clear();
         let mut cost = FixedSum::default();
         for (i, level) in levels.iter_mut().enumerate() {
-            let kept = frame.candidates.previous[i].filter(|&l| holds(frame.candidates.allowed[i], l));
+            let kept = frame.candidates.previous(i).filter(|&l| holds(frame.candidates.allowed[i], l));
             *level = kept.unwrap_or_else(|| frame.minimum(i));
             cost.add(frame.cost_us(i, *level));
             self.offer(frame, i, *level);
@@ -74,7 +74,9 @@ impl FunkhouserSequin {
 
     /// Benefit per cost of a level; infinite for a free one.
     fn value(&self, frame: &Frame<'_>, i: usize, level: Level) -> f64 {
-        let distance = frame.candidates.previous[i]
+        let distance = frame
+            .candidates
+            .previous(i)
             .map_or(0, |previous| position(frame, i, previous).abs_diff(position(frame, i, level)));
         let factor = 1.0 / (1.0 + f64::from(self.hysteresis) * distance as f64);
         let (benefit, cost) = (factor * frame.benefit(i, level), frame.cost_us(i, level));

@@ -95,13 +95,13 @@ impl Frame<'_> {
 
     /// How long what was wanted of candidate `i` in the last frame has been wanted; 0 where nothing was.
     pub fn age_ms(&self, i: usize) -> u32 {
-        let known = self.candidates.previous[i].is_some();
+        let known = self.candidates.previous(i).is_some();
         if known { self.memory.age_ms(self.candidates.group_of(i), self.candidates.slot_of(i)) } else { 0 }
     }
 
     /// What the policy owes to candidate `i`: nothing where no accounts are kept.
     pub fn account(&self, i: usize) -> Account {
-        let known = self.candidates.previous[i].is_some();
+        let known = self.candidates.previous(i).is_some();
         let account = || self.memory.account(self.candidates.group_of(i), self.candidates.slot_of(i));
         if known { account() } else { Account::default() }
     }

@@ -96,7 +96,7 @@ fn plain_newcomer(frame: &Frame<'_>, i: usize) -> Option<SharedClass> {
     let (block, lane) = (slot / BLOCK, slot % BLOCK);
     let block = &frame.objects.blocks()[block];
     let plain =
-        !candidates.is_detailed() && candidates.previous[i].is_none() && block.special & (1 << lane) == 0;
+        !candidates.is_detailed() && candidates.previous(i).is_none() && block.special & (1 << lane) == 0;
     let (profile, weight) = (u32::from(block.table[lane]), candidates.weight[i]);
     plain.then_some(SharedClass { profile, weight, scale: 1.0, stay: 0.0, current: 0 })
 }
@@ -144,7 +144,7 @@ impl Predictive {
         }
         let profile = if own { OWN } else { self.hulls.shared(&candidate, frame.rates, &mut self.knapsack) };
         let scale = if own { 1.0 } else { candidate.cost_scale };
-        let stay = self.options.price(frame.candidates.previous[i], || frame.age_ms(i));
+        let stay = self.options.price(frame.candidates.previous(i), || frame.age_ms(i));
         SharedClass { profile, weight: candidate.weight, scale, stay, current: 0 }
     }
 
@@ -155,7 +155,7 @@ impl Predictive {
             if class.profile == OWN {
                 class.profile = self.hulls.own(frame, &frame.candidate(i), &mut self.knapsack);
             }
-            if let Some(level) = frame.candidates.previous[i] {
+            if let Some(level) = frame.candidates.previous(i) {
                 class.current = self.knapsack.profiles.position_of(class.profile, level.0);
             }
         }
@@ -164,8 +164,8 @@ impl Predictive {
     /// The optimum up to `budget` in `levels`, the dead band being above `ease`. Under steadiness `levels` are led there
     /// instead, and the outcome has their cost and benefit.
     fn solve(&mut self, frame: &Frame<'_>, budget: u64, ease: u64, levels: &mut [Level]) -> Outcome {
-        let &Candidates { ref weight, heaviest, ref place, ref census, ref previous, .. } = frame.candidates;
-        let stay = |i: usize| self.options.price(previous[i], || frame.age_ms(i));
+        let &Candidates { ref weight, heaviest, ref place, ref census, .. } = frame.candidates;
+        let stay = |i: usize| self.options.price(frame.candidates.previous(i), || frame.age_ms(i));
         let odd = &self.odd;
         let crowd = Crowd { weight, heaviest, place, census, odd, stay, threads: frame.threads };
         let Some(steadiness) = &self.options.steadiness else {
@@ -258,7 +258,7 @@ impl Selector for Predictive {
             let gain = frame.benefit(i, to) - frame.benefit(i, level);
             gain > lambda * (frame.cost_us(i, to) - frame.cost_us(i, level))
         };
-        match candidates.previous[i] {
+        match candidates.previous(i) {
             Some(held) if held == level && finer.map(|(l, _)| l).any(pays) => {
                 if frame.age_ms(i) < self.options.dwell_ms { Cause::Dwell } else { Cause::Hysteresis }
             }
@@ -293,7 +293,7 @@ fn open_accounts<F: Fn(usize) -> f32>(
     accounts.clear();
     for (i, item) in knapsack.changed() {
         let best = Level(item);
-        let previous = frame.candidates.previous[i].filter(|&held| held != best);
+        let previous = frame.candidates.previous(i).filter(|&held| held != best);
         let class = previous.map(|held| (held, crowd.class(&knapsack.profiles, i)));
         let offers = class.and_then(|(held, class)| {
             let offer = |level: Level| knapsack.profiles.offer(&class, level.0);

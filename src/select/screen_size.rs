@@ -101,14 +101,14 @@ impl ScreenSizeOptions {
         let Candidate { table, allowed, size_px, .. } = *candidate;
         let levels = frame.rates.levels(table);
         let needed = |scale: f32| self.needed(levels, allowed, size_px * scale, height_px);
-        let wanted = match candidates.previous[i] {
+        let wanted = match candidates.previous(i) {
             None => needed(scale),
             Some(previous) => {
                 let [up, down] = self.scales(scale);
                 previous.clamp(needed(up), needed(down))
             }
         };
-        match candidates.previous[i].filter(|&previous| allowed.contains(previous)) {
+        match candidates.previous(i).filter(|&previous| allowed.contains(previous)) {
             Some(previous) if frame.age_ms(i) < self.dwell_ms => previous,
             _ => wanted,
         }
@@ -165,7 +165,7 @@ impl ScreenSizeOptions {
         let height_px =
             candidates.groups().find(|(g, _)| g.group == group).map_or(1.0, |(g, _)| g.lens.height_px);
         let plainly = plain.level(frame, i, &frame.candidate(i), scale, height_px);
-        let held = candidates.previous[i] == Some(level) && plainly < level;
+        let held = candidates.previous(i) == Some(level) && plainly < level;
         match held {
             true if frame.age_ms(i) < self.dwell_ms => Cause::Dwell,
             true => Cause::Hysteresis,

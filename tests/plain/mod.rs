@@ -114,9 +114,9 @@ fn saturated(frame: &Frame<'_>, levels: &[Level]) -> [bool; 2] {
 
 /// The level of a candidate, its last one and its age heeded.
 fn level(options: &ScreenSizeOptions, frame: &Frame<'_>, i: usize, scale: f32, height_px: f32) -> Level {
-    let Candidates { previous, allowed, .. } = frame.candidates;
+    let allowed = &frame.candidates.allowed;
     let edge = 1.0 + options.band * 0.5;
-    let Some(held) = previous[i] else { return needed(options, frame, i, scale, height_px) };
+    let Some(held) = frame.candidates.previous(i) else { return needed(options, frame, i, scale, height_px) };
     let waits = frame.age_ms(i) < options.dwell_ms && allowed[i].contains(held);
     let finest = needed(options, frame, i, scale * edge, height_px);
     let coarsest = needed(options, frame, i, scale / edge, height_px);
