@@ -7,7 +7,7 @@
 //! built without Bevy's feature `multi_threaded`: one thread.
 
 use std::any::TypeId;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use bevy_app::{App, PostUpdate, TaskPoolPlugin};
 use bevy_asset::AssetPlugin;
@@ -19,6 +19,7 @@ use bevy_ecs::entity::Entity;
 use bevy_math::{Vec3, Vec3A};
 use bevy_mesh::{Mesh3d, MeshPlugin};
 use bevy_transform::components::{GlobalTransform, Transform};
+use cpu_time::ThreadTime;
 
 use crate::camera::{Bound, Camera, FOV_Y, NEAR, VIEWPORT_PX};
 use crate::peer::{Census, Peer};
@@ -60,7 +61,7 @@ impl Peer for Bevy {
     fn frame(&mut self, camera: &Camera) -> Duration {
         let world = self.app.world_mut();
         world.entity_mut(self.camera).insert(place(camera));
-        let start = Instant::now();
+        let start = ThreadTime::now();
         world.run_schedule(PostUpdate);
         let time = start.elapsed();
         world.clear_trackers();

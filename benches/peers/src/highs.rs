@@ -23,7 +23,7 @@ struct Answer {
 #[derive(Deserialize)]
 struct Run {
     time_s: f64,
-    bound: f64,
+    bound: Option<f64>,
     choice: Option<Vec<u32>>,
     proved: bool,
 }
@@ -55,7 +55,8 @@ pub fn rows(instance: &Instance, limit_s: f64) -> io::Result<(Vec<Row>, Option<S
 
 impl Run {
     fn solved(&self, instance: &Instance) -> Solved {
-        let solved = Solved::of(instance, self.time_s, self.bound, self.choice.as_deref());
+        let bound = self.bound.unwrap_or(f64::INFINITY);
+        let solved = Solved::of(instance, self.time_s, bound, self.choice.as_deref());
         Solved { proved: self.proved, ..solved }
     }
 }

@@ -26,7 +26,7 @@ pub struct Solved {
     pub time_s: f64,
     /// Gain of its choice, added up by this side; a relaxation has none.
     pub gain: Option<f64>,
-    /// No choice within the budget gains more, says the solver.
+    /// No choice within the budget gains more, says the solver; infinite where it says nothing.
     pub bound: f64,
     /// Whether it says that its choice is the best.
     pub proved: bool,
@@ -104,9 +104,9 @@ impl Solved {
         Self { time_s, gain, bound: bound - least, proved: false, excess }
     }
 
-    /// The share of a bound that is not gained.
+    /// The share of a finite bound that is not gained.
     pub fn short_of(&self, bound: f64) -> Option<f64> {
-        Some((bound - self.gain?) / bound)
+        self.gain.filter(|_| bound.is_finite()).map(|gain| (bound - gain) / bound)
     }
 }
 

@@ -5,8 +5,9 @@
 //! The machine is one that draws exactly as fast as the cost model says: the time predicted for a frame is handed in as
 //! measured with the next.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use cpu_time::ThreadTime;
 use glam::{Quat, Vec2, Vec3};
 use lod_budget::select::{Measure, ReactiveOptions, ScreenSizeOptions};
 use lod_budget::{
@@ -88,7 +89,7 @@ impl Peer for Loop {
         let views = [ViewInput::new(view(camera), 0)];
         let measured = self.measured.as_slice();
         let input = FrameInput { measured, ..FrameInput::new(&views, self.budget_us) };
-        let start = Instant::now();
+        let start = ThreadTime::now();
         let report = self.runtime.frame(&mut self.objects, &input);
         let time = start.elapsed();
         self.measured = Some(FrameTime::busy(report.frame, report.predicted_us as f32));

@@ -21,7 +21,7 @@ const WHOLE: Plan = Plan {
     bouts: 5,
     frames: 16,
     classes: &[100, 1_000, 10_000],
-    limit_s: 20.0,
+    limit_s: 60.0,
     whole: true,
 };
 
