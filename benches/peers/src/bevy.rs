@@ -1,10 +1,10 @@
 //! Bevy's `check_visibility_ranges` and `check_visibility_cpu_culling`, headless.
 //!
 //! An object is what Bevy's documentation of `VisibilityRange` shows: an entity per level, each with its mesh and the
-//! range of distances in which it is drawn. The entity that would hold the levels of an object together is left out; no
-//! system measured here would look at it. Transforms are final and bounds given, so that nothing is propagated or
-//! computed. A frame is the schedule `PostUpdate` with the plugins that own the two systems and what these need, in an app
-//! built without Bevy's feature `multi_threaded`: one thread.
+//! range of distances in which it is drawn. The entity that would hold the levels of an object together is left out;
+//! no system measured here would look at it. Transforms are final and bounds given, so that nothing is propagated or
+//! computed. A frame is the schedule `PostUpdate` with the plugins that own the two systems and what these need, in
+//! an app built without Bevy's feature `multi_threaded`: one thread.
 
 use std::any::TypeId;
 use std::time::Duration;

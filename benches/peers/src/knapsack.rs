@@ -1,8 +1,8 @@
 //! The knapsacks of the scene, and the solvers of the crate and of HiGHS on them.
 //!
-//! An instance is what a frame has to choose from: the first so many objects in view of the scene of 100 000, a class each,
-//! with its four levels as items. Costs are those of the cost model in microseconds, benefits are projected area times
-//! accuracy, and the budget is two fifths of the way from the least to the most that the classes can cost.
+//! An instance is what a frame has to choose from: the first so many objects in view of the scene of 100 000, a class
+//! each, with its four levels as items. Costs are those of the cost model in microseconds, benefits are projected
+//! area times accuracy, and the budget is two fifths of the way from the least to the most that the classes can cost.
 
 use std::time::Instant;
 

@@ -5,7 +5,8 @@
 //! benches/peers/run.sh --quick
 //! ```
 //!
-//! Only a whole run writes `docs/peers.md` and `docs/peers.csv`. A peer that cannot be measured has a row that says why.
+//! Only a whole run writes `docs/peers.md` and `docs/peers.csv`. A peer that cannot be measured has a row that says
+//! why.
 
 #[cfg(feature = "bevy")]
 mod bevy;
@@ -94,8 +95,8 @@ fn knapsacks(scene: &Scene, classes: usize, plan: &Plan, report: &mut Report) ->
     Ok(())
 }
 
-/// How many programs wanted a core in the last minute, as far as the system tells: with more than there are cores, times
-/// are too long.
+/// How many programs wanted a core in the last minute, as far as the system tells: with more than there are cores,
+/// times are too long.
 fn load() -> Option<String> {
     let text = std::fs::read_to_string("/proc/loadavg").ok()?;
     Some(text.split_whitespace().next()?.to_owned())

@@ -1,9 +1,9 @@
 //! The crate: `Runtime::frame` under three policies.
 //!
 //! A frame is everything that the call does: the look for what has changed, culling, rating, selection (with its
-//! certificate, where there is one), transitions, the list of changes, feedback, and the prediction of the frame's time.
-//! The machine is one that draws exactly as fast as the cost model says: the time predicted for a frame is handed in as
-//! measured with the next.
+//! certificate, where there is one), transitions, the list of changes, feedback, and the prediction of the frame's
+//! time. The machine is one that draws exactly as fast as the cost model says: the time predicted for a frame is
+//! handed in as measured with the next.
 
 use std::time::Duration;
 

@@ -33,8 +33,8 @@ pub trait Peer {
     /// What it tests against the view.
     fn bound(&self) -> Bound;
 
-    /// One frame, from where the camera is to which objects are to be drawn at which level. Returns the processor's time
-    /// that it took this thread.
+    /// One frame, from where the camera is to which objects are to be drawn at which level. Returns the processor's
+    /// time that it took this thread.
     fn frame(&mut self, camera: &Camera) -> Duration;
 
     /// The last frame's answer.

@@ -10,6 +10,9 @@ use crate::machine;
 use crate::peer::{Frames, Row};
 use crate::scene::Scene;
 
+/// The words around the tables.
+const PAGE: &str = include_str!("page.md");
+
 /// Everything that was measured.
 #[derive(Default)]
 pub struct Report {
@@ -57,16 +60,20 @@ impl Report {
     }
 
     fn page(&self) -> String {
-        let [times, answers, solvers] = [self.times(), self.answers(), self.solvers()];
+        let parts = [
+            ("{times}", self.times()),
+            ("{answers}", self.answers()),
+            ("{solvers}", self.solvers()),
+            ("{facts}", self.facts()),
+        ];
+        let fill = |page: String, (place, part): (&str, String)| page.replace(place, part.trim_end());
+        parts.into_iter().fold(PAGE.to_owned(), fill)
+    }
+
+    fn facts(&self) -> String {
         let machine = machine::description().into_iter().map(|(name, value)| (name.to_owned(), value));
-        let facts =
-            machine.chain(self.facts.iter().cloned()).fold(String::new(), |mut text, (name, value)| {
-                let _ = writeln!(text, "| {name} | {value} |");
-                text
-            });
-        format!(
-            "{HEAD}\n{times}\n{FRAMES}\n{answers}\n{LACKING}\n{solvers}\n{SOLVERS}\n## The machine\n\n| | |\n|---|---|\n{facts}"
-        )
+        let facts = machine.chain(self.facts.iter().cloned());
+        facts.map(|(name, value)| format!("| {name} | {value} |\n")).collect()
     }
 
     /// A row per peer, a column per size.
@@ -226,73 +233,3 @@ fn duration(seconds: f64) -> String {
         s => format!("{} s", figure(s)),
     }
 }
-
-const HEAD: &str = "# Peers
-
-What others do with the same scene, the same cameras and the same knapsacks. `benches/peers/run.sh` fetches the peers,
-measures this page and writes it together with [`peers.csv`](peers.csv). None of it is a test: figures depend on the
-machine and on what else it does.
-
-## Frames
-";
-
-const FRAMES: &str = "**Scene.** Objects from a seed, scattered over a square of ground, a hundred square metres to each, in no
-spatial order; sixteen kinds of one radius (0.5 m to 6 m) and four levels each. The camera stands in the middle, sees
-91° by 60° without a limit to how far, so that a quarter of all is in view, and walks and turns a little each frame.
-
-**What is timed.** From where the camera is to which objects are to be drawn at which level; nothing is drawn or
-uploaded. Nanoseconds of the processor's time, not of the clock on the wall, per object in the scene, visible or not: the
-tenth percentile of frames. lod-budget and Bevy take turns frame by frame in one process, with one thread; each first
-repeats its last frame untimed, so that its data are in the caches as far as they fit. Then three.ez and three.js have a
-process of node each, whose other threads (garbage, compiler) count too, and so on five times.
-
-- **lod-budget** is a whole `Runtime::frame`: culling, rating, selection, hard transitions, the list of changes and the
-  prediction of the frame's time. Options are the defaults, save that *static* and *reactive* have thresholds without
-  hysteresis, as the peers have. The time predicted for a frame is handed back as measured, so that the policies with a
-  budget have something to follow; the budget is two fifths of the way from the least to the most that what is in view
-  can cost.
-- **Bevy** is the schedule `PostUpdate` with `CameraPlugin` (`check_visibility_ranges`, `check_visibility_cpu_culling`
-  and what resets and marks), one thread. Its levels are entities: each object is four, each with a mesh and the
-  `VisibilityRange` in which it is drawn, as Bevy's documentation has it. So it tests four times as many. Bounds and
-  transforms are given and never change.
-- **three.ez instanced-mesh** is `performFrustumCulling` of an `InstancedMesh2` per kind, with its hierarchy of boxes
-  and its levels. Objects are added in the order of the scene; in trials its time went up and down by a factor of two
-  from process to process, more than anybody else's.
-- **three.js** is what its renderer does before it draws: `LOD.update` of every object, then the frustum against the
-  mesh that is left. It waits for memory: five `Object3D` an object take 11 KB. In a trial with 300 objects each took a
-  tenth of the time. A million of them are more than a page would ever get.
-
-## The same answers
-
-Thresholds are the distances at which a level's error looks a pixel large, so that *static* and the peers should show the
-same levels. They differ by what they test against the view: a sphere, or the upright cube around it, which lets some
-more in at the edges. The count one by one, in double precision, uses the same bound as the peer. *Reactive* and
-*predictive* show other levels on purpose. *Gap* is that of what is shown, as a fraction of the bound on the gain: the
-default options hold some of the optimum back until it is worth a switch.
-";
-
-const LACKING: &str = "**What the peers do not do.** None of the three knows what drawing costs. There is no budget, no prediction and no
-certificate: who wants a frame to fit tunes distances by hand. Their levels follow from distance; the size and worth of an
-object matter only as far as somebody has put them into its distances. three.ez and three.js do not tell what has changed
-since the last frame.
-
-**What they do besides.** Bevy fades between levels, answers for 32 views at once, heeds layers and a hierarchy of
-visibility, tells of changes, uses all cores where it may, and can leave culling to the graphics card. three.ez's lists are
-what the graphics card draws from, and its hierarchy also serves picking. three.js has hysteresis per level.
-
-**What is kind to whom.** Nothing moves, which is kind to a hierarchy (lod-budget's, three.ez's) and does nothing for
-Bevy and three.js, which look at every object in every frame. No view but one, no shadows.
-
-## Knapsacks
-
-The knapsack that a frame has to solve: the first so many objects in view of the scene of 100 000, a class each with four
-items. Gains are benefit beyond that of the coarsest levels; gaps are fractions of the bound on the gain.
-";
-
-const SOLVERS: &str = "Times are the processor's. lod-budget's are the fastest of five runs, `exact`'s of one; HiGHS's are those of one `run`
-each, with one thread, presolve included, building and passing the model not. `exact` and each of HiGHS's are given a
-minute. *Proved* means that nothing is better; at its default gap HiGHS stops before. Choices are added up here, whatever
-the solver says of them. HiGHS works to tolerances of 1e-6, so that a choice of its may exceed the budget by a trace, and
-a bound be off by one. It solves any linear programme, of which this is a small and special one. The frame loop runs none
-of these solvers, but one that starts from its last answer: its gaps are in the table of frames.
-";

@@ -1,8 +1,8 @@
 //! The scene that every peer is given, made from a seed.
 //!
-//! Objects are scattered over a square of ground, a hundred square metres to each. There are sixteen kinds, each with one
-//! radius and one table of four levels: three.ez switches a kind by distance alone, so that sizes within a kind would
-//! make its levels incomparable. The order of objects is that of the dice.
+//! Objects are scattered over a square of ground, a hundred square metres to each. There are sixteen kinds, each with
+//! one radius and one table of four levels: three.ez switches a kind by distance alone, so that sizes within a kind
+//! would make its levels incomparable. The order of objects is that of the dice.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;

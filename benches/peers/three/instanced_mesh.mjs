@@ -1,6 +1,6 @@
-// three.ez's InstancedMesh2: one mesh per kind of object with its levels and its hierarchy of boxes, which is how one is
-// meant to be used. A frame is `performFrustumCulling` of each: culling, levels, and the lists of indices to be drawn. The
-// renderer is a stand-in that takes buffers and does nothing: what is uploaded is not measured.
+// three.ez's InstancedMesh2: one mesh per kind of object with its levels and its hierarchy of boxes, which is how one
+// is meant to be used. A frame is `performFrustumCulling` of each: culling, levels, and the lists of indices to be
+// drawn. The renderer is a stand-in that takes buffers and does nothing: what is uploaded is not measured.
 
 import { InstancedMesh2 } from '@three.ez/instanced-mesh';
 import { Box3, BufferGeometry, MeshBasicMaterial, Sphere, Vector3 } from 'three';

@@ -1,5 +1,5 @@
-// node measure.mjs FOLDER PEER: the scene in FOLDER through a peer, as JSON on standard output. Frames are drawn from the
-// walk until the compiler has had its time; then the walk counts.
+// node measure.mjs FOLDER PEER: the scene in FOLDER through a peer, as JSON on standard output. Frames are drawn from
+// the walk until the compiler has had its time; then the walk counts.
 
 import { createRequire } from 'node:module';
 import { performance } from 'node:perf_hooks';
