@@ -38,7 +38,7 @@ impl fmt::Display for Level {
     }
 }
 
-/// The most levels that a table may have; one value of [`Level`] is kept for "not drawn".
+/// The most levels that a table may have; two values of [`Level`] are kept for "not drawn" and for "not known".
 pub const MAX_LEVELS: usize = 254;
 
 /// What one level of an object costs to draw, and how true it is.

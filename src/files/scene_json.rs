@@ -22,7 +22,7 @@
 //! be empty.
 //!
 //! **Table**: `name`, unique; `center` (default `[0,0,0]`) and `radius` (> 0) of the bound of all levels, in object
-//! units; `levels`, finest first, 1 to 255 of them.
+//! units; `levels`, finest first, 1 to 254 of them.
 //!
 //! **Level**: `triangles`, `vertices`, `accuracy` (0 to 1); `draws` (default 1), `bytes` (default 0), `error`
 //! (geometric, in object units; left out where nobody measured it), `min_size` (the smallest projected diameter, as a

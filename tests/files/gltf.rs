@@ -378,7 +378,7 @@ fn broken_msft_lods_are_refused() {
     refused(&chain_file(nested), "node 1: it has MSFT_lod levels within a level");
     let many: Vec<Value> = (0..256).map(|_| plain()).collect();
     let many = [vec![lod((1..=256).collect())], many].concat();
-    refused(&chain_file(Value::Array(many)), "it must have at most 255 levels");
+    refused(&chain_file(Value::Array(many)), "it must have at most 254 levels");
     let no_levels = chain_file(json!([lod(json!([]))]));
     assert_eq!(chains(&good(&no_levels)), [(0, vec![100])]);
 }

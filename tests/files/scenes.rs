@@ -155,7 +155,7 @@ fn errors_name_the_table_and_the_level() {
     refused("\"draws\":2", "\"draw_calls\":2", "unknown field `draw_calls`");
     let levels = r#"{"triangles":12,"vertices":8,"accuracy":0.5}"#;
     refused(levels, "", "table 'stone': it must have at least one level");
-    refused(levels, &vec![levels; 256].join(","), "table 'stone': it must have at most 255 levels");
+    refused(levels, &vec![levels; 256].join(","), "table 'stone': it must have at most 254 levels");
 }
 
 #[test]
