@@ -63,7 +63,8 @@ pub use instance::{Instance, InstanceError, Item};
 #[cfg(feature = "files")]
 pub use json::InstanceJsonError;
 pub use shared::{
-    Crowd, OddClass, Offer, Outcome, Position, ProfileItem, Profiles, SharedClass, SharedKnapsack,
+    Crowd, Menus, Octet, OddClass, Offer, Outcome, OwnClass, Position, ProfileItem, Profiles, SharedClass,
+    SharedKnapsack,
 };
 pub(crate) use shared::{Hold, Units, sift};
 pub use solution::Solution;

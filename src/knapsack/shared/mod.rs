@@ -16,11 +16,13 @@
 mod certificate;
 mod class;
 mod crowd;
+mod menus;
 mod profiles;
 mod sift;
 
 pub use certificate::Outcome;
 pub use crowd::{Crowd, OddClass};
+pub use menus::{Menus, Octet, OwnClass};
 pub use profiles::{Offer, Position, ProfileItem, Profiles};
 pub(crate) use sift::{Hold, Units, sift};
 
@@ -44,11 +46,6 @@ pub struct SharedClass {
     pub current: u8,
 }
 
-impl SharedClass {
-    /// A class of no weight.
-    const NOTHING: Self = Self { profile: 0, weight: 0.0, scale: 1.0, stay: 0.0, current: 0 };
-}
-
 /// Solver with its scratch and the memory of the last λ. Fill `profiles` and `classes`, call
 /// [`SharedKnapsack::solve`], read `chosen`.
 #[derive(Clone, Debug, Default)]
@@ -67,6 +64,8 @@ pub struct SharedKnapsack {
     /// nothing.
     owners: Vec<u32>,
     aside: Aside,
+    /// How many profiles there were at the start of the call. Others were made for its classes.
+    shared: usize,
     opened: Vec<u32>,
     histogram: Vec<u64>,
     rival: Vec<u8>,
