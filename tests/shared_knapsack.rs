@@ -1,7 +1,7 @@
 //! The frame loop's greedy against slow twins: the textbook's greedy, from scratch, and exhaustive search.
 
 use lod_budget::knapsack::{
-    Crowd, Instance, Item, Menus, Octet, OddClass, Outcome, OwnClass, Position, ProfileItem, Profiles,
+    Crowd, Ends, Instance, Item, Menus, Octet, OddClass, Outcome, OwnClass, Position, ProfileItem, Profiles,
     SharedClass, SharedKnapsack, exact,
 };
 use proptest::prelude::*;
@@ -349,6 +349,16 @@ struct OwnMembers<'a>(Vec<(OwnClass, &'a [ProfileItem])>);
 impl Menus for OwnMembers<'_> {
     fn len(&self) -> usize {
         self.0.len()
+    }
+
+    fn ends(&self) -> Ends {
+        let mut ends = Ends::default();
+        for (_, items) in &self.0 {
+            let best = items.iter().map(|i| i.value).fold(0.0, f32::max);
+            let ticks = |least: f32| items.iter().filter(|i| i.value >= least).map(|i| i.ticks).min();
+            ends.add(ticks(0.0).expect("an item"), ticks(best).expect("an item"));
+        }
+        ends
     }
 
     fn class(&self, n: usize) -> OwnClass {

@@ -63,8 +63,8 @@ pub use instance::{Instance, InstanceError, Item};
 #[cfg(feature = "files")]
 pub use json::InstanceJsonError;
 pub use shared::{
-    Crowd, Menus, Octet, OddClass, Offer, Outcome, OwnClass, Position, ProfileItem, Profiles, SharedClass,
-    SharedKnapsack,
+    Crowd, Ends, Menus, Octet, OddClass, Offer, Outcome, OwnClass, Position, ProfileItem, Profiles,
+    SharedClass, SharedKnapsack,
 };
 pub(crate) use shared::{Hold, Units, sift};
 pub use solution::Solution;

@@ -1,6 +1,6 @@
 //! The predictive policy: the multiple-choice knapsack under the budget of this frame.
 
-use super::menu::{FrameMenus, MenuColumns, OwnCandidate, whole_ticks};
+use super::menu::{FrameMenus, MenuColumns, OwnCandidates, Pricing, whole_ticks};
 use super::steadiness::{Accounts, Optimum, Steadiness};
 use super::{Frame, Needs, Selector};
 use crate::frame::{Candidate, Candidates, Cause, Certificate, OptionsError, PixelSum, SelectReport};
@@ -77,7 +77,7 @@ pub struct Predictive {
     hulls: Hulls,
     /// Candidates whose class is not simply that of a level of their table, and those that share no hull.
     odd: Vec<OddClass>,
-    own: Vec<OwnCandidate>,
+    own: OwnCandidates,
     accounts: Accounts,
     /// Candidates that are held coarser than the optimum, ascending.
     owed: Vec<u32>,
@@ -141,7 +141,7 @@ impl Predictive {
     fn push_own(&mut self, frame: &Frame<'_>, i: usize, candidate: &Candidate) {
         let (previous, age_ms) = (frame.candidates.previous[i], frame.candidates.age_ms[i]);
         let stay = self.options.price(previous, age_ms);
-        self.own.push(OwnCandidate::new(i, candidate, previous, stay, &self.hulls.columns));
+        self.own.push(i, candidate, previous, stay, &self.hulls.pricing(frame));
     }
 
     fn push_odd(&mut self, frame: &Frame<'_>, i: usize, candidate: &Candidate) {
@@ -159,7 +159,7 @@ impl Predictive {
     fn solve(&mut self, frame: &Frame<'_>, budget: u64, ease: u64, levels: &mut [Level]) -> Outcome {
         let Candidates { weight, place, census, previous, age_ms, .. } = frame.candidates;
         let stay = |i: usize| self.options.price(previous[i], age_ms[i]);
-        let own = self.hulls.menus(&self.own, frame);
+        let own = FrameMenus { own: &self.own, pricing: self.hulls.pricing(frame) };
         let crowd = Crowd { weight, place, census, odd: &self.odd, own, stay };
         let Some(steadiness) = &self.options.steadiness else {
             let outcome = self.knapsack.solve_crowd(&crowd, budget, ease, |i| frame.key(i));
@@ -362,9 +362,9 @@ impl Hulls {
         knapsack.profiles.push(&self.items)
     }
 
-    /// What the candidates that share no hull may choose from, their whole cost in the ticks.
-    fn menus<'a>(&'a self, candidates: &'a [OwnCandidate], frame: &Frame<'a>) -> FrameMenus<'a> {
-        FrameMenus { columns: &self.columns, candidates, model: frame.model, ticks_per_us: self.ticks_per_us }
+    /// What prices the candidates that share no hull.
+    fn pricing<'a>(&'a self, frame: &Frame<'a>) -> Pricing<'a> {
+        Pricing { columns: &self.columns, model: frame.model, ticks_per_us: self.ticks_per_us }
     }
 }
 

@@ -142,10 +142,12 @@ impl Totals {
             let class = Class::new(profiles, &odd.class);
             totals.add([0, class.held(), class.last()].map(|position| class.cost(position)), 1);
         }
-        for menu in crowd.menus() {
-            let [cheapest, best] = menu.ends();
-            let held = if with_held { menu.held_ticks(profiles) } else { 0 };
-            totals.add([cheapest, held, best], 1);
+        let own = crowd.own.ends();
+        totals.cheapest = totals.cheapest.saturating_add(own.cheapest);
+        totals.best = totals.best.saturating_add(own.best);
+        totals.widest = totals.widest.max(own.widest);
+        for menu in crowd.menus().take(if with_held { usize::MAX } else { 0 }) {
+            totals.held = totals.held.saturating_add(menu.held_ticks(profiles));
         }
         totals
     }
@@ -272,6 +274,7 @@ impl Aside {
     }
 
     /// Sets a class with items of its own aside that goes to one of them for every λ of the bracket.
+    #[inline]
     fn settle<M: Menus>(&mut self, menus: &M, n: usize, menu: &Menu<'_, M>, pick: Pick) {
         let weight = menu.class.weight;
         self.benefit.value += self.benefit.of(weight, pick.value);

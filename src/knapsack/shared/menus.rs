@@ -37,6 +37,26 @@ pub struct OwnClass {
     pub held: Option<u8>,
 }
 
+/// What classes add up to, in ticks, whatever is chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Ends {
+    /// With the cheapest item of each.
+    pub cheapest: u64,
+    /// With the cheapest of the best items of each.
+    pub best: u64,
+    /// The most that the one of a class is dearer than the other.
+    pub widest: u64,
+}
+
+impl Ends {
+    /// Adds a class by what its cheapest item and the cheapest of its best ones cost.
+    pub fn add(&mut self, cheapest: u64, best: u64) {
+        self.cheapest = self.cheapest.saturating_add(cheapest);
+        self.best = self.best.saturating_add(best);
+        self.widest = self.widest.max(best - cheapest);
+    }
+}
+
 /// The classes of a crowd with items of their own, in ascending order. Items of a class are numbered from 0.
 pub trait Menus {
     /// How many classes there are.
@@ -46,6 +66,9 @@ pub trait Menus {
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
+
+    /// What all of them add up to.
+    fn ends(&self) -> Ends;
 
     /// The class of number `n`.
     fn class(&self, n: usize) -> OwnClass;
@@ -67,6 +90,10 @@ pub trait Menus {
 impl Menus for () {
     fn len(&self) -> usize {
         0
+    }
+
+    fn ends(&self) -> Ends {
+        Ends::default()
     }
 
     fn class(&self, _: usize) -> OwnClass {
@@ -96,6 +123,8 @@ pub(super) struct Menu<'a, M> {
     menus: &'a M,
     n: usize,
     pub class: OwnClass,
+    /// The first octet, which nearly always is all.
+    first: Octet,
 }
 
 /// The item that a class goes to.
@@ -110,17 +139,22 @@ pub(super) struct Pick {
 
 impl<'a, M: Menus> Menu<'a, M> {
     pub fn new(menus: &'a M, n: usize) -> Self {
-        Self { menus, n, class: menus.class(n) }
+        Self { menus, n, class: menus.class(n), first: menus.octet(n, 0) }
     }
 
-    fn octets(&self) -> impl Iterator<Item = Octet> {
-        (0..self.menus.octets(self.n)).map(|octet| self.menus.octet(self.n, octet))
+    /// Folds all octets.
+    #[inline]
+    fn fold<T>(&self, start: T, mut step: impl FnMut(T, &Octet) -> T) -> T {
+        let start = step(start, &self.first);
+        let others = 1..self.menus.octets(self.n);
+        others.fold(start, |folded, octet| step(folded, &self.menus.octet(self.n, octet)))
     }
 
     /// Value and ticks of an item.
     fn get(&self, item: u8) -> [f64; 2] {
-        let octet = self.menus.octet(self.n, usize::from(item) / LANES);
-        [octet.value, octet.ticks].map(|column| column[usize::from(item) % LANES])
+        let (octet, lane) = (usize::from(item) / LANES, usize::from(item) % LANES);
+        let Octet { value, ticks } = if octet == 0 { self.first } else { self.menus.octet(self.n, octet) };
+        [value[lane], ticks[lane]]
     }
 
     /// What the class costs and is worth with the item of a code; `None` when it has no such item.
@@ -131,12 +165,12 @@ impl<'a, M: Menus> Menu<'a, M> {
 
     /// All items, under the caller's codes.
     fn items(&self) -> impl Iterator<Item = ProfileItem> {
-        let lanes = self.octets().flat_map(|octet| octet.value.into_iter().zip(octet.ticks));
-        let items = lanes.enumerate().filter(|(_, (value, _))| *value >= 0.0);
-        items.map(|(item, (value, ticks))| ProfileItem {
+        let lanes = 0..self.menus.octets(self.n) * LANES;
+        let items = lanes.map(|item| (item as u8, self.get(item as u8)));
+        items.filter(|(_, [value, _])| *value >= 0.0).map(|(item, [value, ticks])| ProfileItem {
             value: value as f32,
-            ticks: ticks as u64,
-            item: self.menus.code(self.n, item as u8),
+            ticks: whole(ticks),
+            item: self.menus.code(self.n, item),
         })
     }
 
@@ -157,30 +191,22 @@ impl<'a, M: Menus> Menu<'a, M> {
         ticks
     }
 
-    /// Ticks of the cheapest item, and of the cheapest of the best ones.
-    pub fn ends(&self) -> [u64; 2] {
-        let (mut cheapest, mut best) = (f64::INFINITY, [-1.0, f64::INFINITY]);
-        for octet in self.octets() {
-            cheapest = f64::min(cheapest, least(octet.ticks));
-            let value = -least(octet.value.map(|value| -value));
-            let ticks = least(ticks_where(&octet, |_, v| v == value));
-            if value > best[0] || value == best[0] && ticks < best[1] {
-                best = [value, ticks];
-            }
-        }
-        [cheapest as u64, best[1] as u64]
+    /// Ticks of the cheapest item.
+    fn cheapest(&self) -> f64 {
+        self.fold(f64::INFINITY, |cheapest, octet| f64::min(cheapest, least(octet.ticks)))
     }
 
     /// The item that is the best one for every λ of the bracket, with and without the price of switching; `None` where
     /// none is, or slopes are so near to the bracket's ends that their rounding could tell.
     ///
     /// Looked for at what is held first, which from frame to frame is nearly always the answer.
+    #[inline]
     pub fn pick(&self, bracket: [f32; 2]) -> Option<Pick> {
         let ends = self.opened(bracket);
         let is_best = |item: &u8| self.is_best(*item, ends);
         let item = self.class.held.filter(is_best).or_else(|| Some(self.best(ends[0])).filter(is_best))?;
         let [value, ticks] = self.get(item);
-        Some(Pick { item, value: value as f32, ticks: ticks as u64, least: self.least_value() })
+        Some(Pick { item, value: value as f32, ticks: whole(ticks), least: self.least_value() })
     }
 
     /// Whether no step from an item that was picked has a slope of `low` or more, however slopes are rounded.
@@ -198,36 +224,25 @@ impl<'a, M: Menus> Menu<'a, M> {
 
     /// Whether an item is better than each other one: than those that cost more at the lower end, than those that cost
     /// less at the upper end. Of equal ones the first is the best.
-    fn is_best(&self, item: u8, [low, high]: [f64; 2]) -> bool {
-        let ([value, ticks], weight) = (self.get(item), self.weight());
-        let mut lane = 0.0;
-        self.octets().all(|octet| {
-            let first = lane;
-            lane += LANES as f64;
-            let mut worse = [0u64; LANES];
-            for at in 0..LANES {
-                let (gain, cost) = (octet.value[at] - value, octet.ticks[at] - ticks);
-                let price = cost * if cost > 0.0 { low } else { high };
-                let is_same = (gain == 0.0) & (cost == 0.0) & (first + at as f64 >= f64::from(item));
-                worse[at] = u64::from((weight * gain < price) | is_same);
-            }
-            worse.iter().fold(1, |all, &one| all & one) == 1
-        })
+    #[inline]
+    fn is_best(&self, item: u8, ends: [f64; 2]) -> bool {
+        let (found, weight) = (self.get(item), self.weight());
+        let (_, is_best) = self.fold((f64::from(item), true), |(lane, is_best), octet| {
+            (lane - LANES as f64, is_best & is_best_of(octet, found, lane, weight, ends))
+        });
+        is_best
     }
 
     /// The item of the greatest benefit − λ · cost, but for rounding.
     fn best(&self, lambda: f64) -> u8 {
         let weight = self.weight();
-        let (mut best, mut most, mut item) = (0, f64::NEG_INFINITY, 0);
-        for octet in self.octets() {
-            for at in 0..LANES {
-                let surplus = weight * octet.value[at] - lambda * octet.ticks[at];
-                if surplus > most {
-                    (best, most) = (item + at, surplus);
-                }
+        let (_, best, _) = self.fold((0, 0, f64::NEG_INFINITY), |(first, mut best, mut most), octet| {
+            for lane in 0..LANES {
+                let surplus = weight * octet.value[lane] - lambda * octet.ticks[lane];
+                (best, most) = if surplus > most { (first + lane, surplus) } else { (best, most) };
             }
-            item += LANES;
-        }
+            (first + LANES, best, most)
+        });
         best as u8
     }
 
@@ -238,26 +253,41 @@ impl<'a, M: Menus> Menu<'a, M> {
 
     /// The greatest value of the cheapest items.
     fn least_value(&self) -> f32 {
-        let cheapest = self.octets().map(|octet| least(octet.ticks)).fold(f64::INFINITY, f64::min);
-        let value = |octet: Octet| -> f64 {
-            -least(values_where(&octet, |ticks, _| ticks == cheapest).map(|value| -value))
-        };
-        self.octets().map(value).fold(0.0, f64::max) as f32
+        let cheapest = self.cheapest();
+        self.fold(0.0, |value, octet| f64::max(value, value_of(octet, cheapest))) as f32
     }
 }
 
-/// The ticks of the items that `is` says, and infinity.
-fn ticks_where(octet: &Octet, is: impl Fn(f64, f64) -> bool) -> [f64; LANES] {
-    std::array::from_fn(
-        |at| {
-            if is(octet.ticks[at], octet.value[at]) { octet.ticks[at] } else { f64::INFINITY }
-        },
-    )
+/// Whether an item, whose `lane` it is counted from the octet's first, is better than the others in the octet, or the first
+/// of equal ones.
+#[inline]
+fn is_best_of(
+    octet: &Octet,
+    [value, ticks]: [f64; 2],
+    lane: f64,
+    weight: f64,
+    [low, high]: [f64; 2],
+) -> bool {
+    let mut not_worse = [0u64; LANES];
+    for at in 0..LANES {
+        let (gain, cost) = (octet.value[at] - value, octet.ticks[at] - ticks);
+        let price = cost * if cost > 0.0 { low } else { high };
+        let is_same = (gain == 0.0) & (cost == 0.0) & (LANE[at] >= lane);
+        not_worse[at] = u64::from(!((weight * gain < price) | is_same));
+    }
+    not_worse.iter().fold(0, |any, &one| any | one) == 0
 }
 
-/// The values of the items that `is` says, and 0.
-fn values_where(octet: &Octet, is: impl Fn(f64, f64) -> bool) -> [f64; LANES] {
-    std::array::from_fn(|at| if is(octet.ticks[at], octet.value[at]) { octet.value[at] } else { 0.0 })
+/// The numbers of lanes.
+const LANE: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
+/// The greatest value of the items of so many ticks; 0 without one.
+fn value_of(octet: &Octet, ticks: f64) -> f64 {
+    let mut value = octet.value;
+    for lane in 0..LANES {
+        value[lane] = if octet.ticks[lane] == ticks { -value[lane] } else { 0.0 };
+    }
+    -least(value)
 }
 
 /// The least number. By halves, so that it is vector code.
@@ -269,4 +299,9 @@ fn least(mut lanes: [f64; LANES]) -> f64 {
         }
     }
     lanes[0]
+}
+
+/// A number of ticks.
+fn whole(ticks: f64) -> u64 {
+    ticks as i64 as u64
 }

@@ -22,7 +22,7 @@ mod sift;
 
 pub use certificate::Outcome;
 pub use crowd::{Crowd, OddClass};
-pub use menus::{Menus, Octet, OwnClass};
+pub use menus::{Ends, Menus, Octet, OwnClass};
 pub use profiles::{Offer, Position, ProfileItem, Profiles};
 pub(crate) use sift::{Hold, Units, sift};
 
