@@ -332,8 +332,38 @@ const TRIES: usize = 6;
 /// How much farther a bracket reaches than the one that λ turned out to be beyond.
 const REACH: f32 = 0.15;
 
+/// A bracket is guessed from one before that is no more than so many widths away.
+const FARTHEST: f64 = 8.0;
+
+/// How far to look around the guess, as a share of the way to it, and of λ.
+const DOUBT: [f64; 2] = [0.25, 0.01];
+
 /// A sample is so large at least.
 const SAMPLE: usize = 8192;
+
+/// Where the budget may end, if costs go on beyond a bracket as they go inside; `None` where that is too far to tell.
+fn next_bracket(survey: &Survey, [low, high]: [f32; 2], target: u64) -> Option<[f32; 2]> {
+    let inside = survey.down_to.saturating_sub(survey.above) as f64;
+    let width = f64::from(high) - f64::from(low);
+    let (from, distance) = if survey.above > target {
+        (f64::from(high), (survey.above - target) as f64 / inside)
+    } else {
+        (f64::from(low), -((target - survey.down_to) as f64 / inside))
+    };
+    let guess = from + distance * width;
+    let doubt = DOUBT[0] * (distance * width).abs() + DOUBT[1] * guess;
+    let bracket = [((guess - doubt) as f32).max(f32::MIN_POSITIVE), (guess + doubt) as f32];
+    (distance.abs() <= FARTHEST && guess > doubt).then_some(bracket)
+}
+
+/// The bracket beyond another, where the budget does not end.
+fn farther_bracket(survey: &Survey, [low, high]: [f32; 2], target: u64) -> [f32; 2] {
+    if survey.above > target {
+        [high, high * (1.0 + REACH)]
+    } else {
+        [(low * (1.0 - REACH)).max(f32::MIN_POSITIVE), low]
+    }
+}
 
 impl SharedKnapsack {
     /// [`SharedKnapsack::solve`] of a crowd. Afterwards [`SharedKnapsack::changed`] lists the classes that were looked at
@@ -395,9 +425,9 @@ impl SharedKnapsack {
         if totals.widest > target - totals.cheapest {
             return None;
         }
-        let (survey, bracket) = self.bracket_crowd(crowd, target)?;
+        let (survey, bracket) = self.bracket_crowd(crowd, target, totals.cheapest)?;
         let critical = self.greedy_aside(crowd, survey, target, bracket, key);
-        self.bracket.lambda = critical.lambda;
+        self.bracket.follow(critical.lambda);
         let sums = self.sum_up(critical.lambda);
         let is_near = sums.outcome(target, &self.aside).priced_gap() <= super::RIVAL_GAP;
         is_near.then(|| Outcome { steps: critical.steps, ..sums.outcome(budget, &self.aside) })
@@ -423,42 +453,44 @@ impl SharedKnapsack {
     }
 
     /// A bracket that the budget ends in, and the survey of the classes that it leaves to be listed: around the last λ, or
-    /// where a sample of the crowd says.
+    /// not far from there, or where a sample of the crowd says.
     fn bracket_crowd<F: Fn(usize) -> f32, M: Menus>(
         &mut self,
         crowd: &Crowd<'_, F, M>,
         target: u64,
+        cheapest: u64,
     ) -> Option<(Survey, [f32; 2])> {
-        let is_warm = self.bracket.lambda > 0.0;
-        let mut bracket = if is_warm { self.warm_bracket() } else { self.sampled_bracket(crowd, target) };
-        for attempt in 0..TRIES {
+        let mut is_warm = self.bracket.lambda > 0.0;
+        let room = target - cheapest;
+        let mut bracket = if is_warm { self.warm_bracket() } else { self.sampled_bracket(crowd, room) };
+        for _attempt in 0..TRIES {
             let survey = self.sift(crowd, bracket);
             if survey.above <= target && target < survey.down_to {
-                self.bracket.narrow();
                 return Some((survey, bracket));
             }
-            self.bracket.widen();
-            let [low, high] = bracket;
-            bracket = if attempt == 0 && is_warm {
-                self.sampled_bracket(crowd, target)
-            } else if survey.above > target {
-                [high, high * (1.0 + REACH)]
-            } else {
-                [(low * (1.0 - REACH)).max(f32::MIN_POSITIVE), low]
+            let next = next_bracket(&survey, bracket, target);
+            bracket = match next {
+                Some(next) => next,
+                None if is_warm => self.sampled_bracket(crowd, room),
+                None => farther_bracket(&survey, bracket, target),
             };
+            is_warm &= next.is_some();
+            self.bracket.widen();
         }
         None
     }
 
-    /// The bracket that a sample of the crowd suggests.
+    /// The bracket that a sample of the crowd suggests, for so much room beyond the cheapest choice.
     fn sampled_bracket<F: Fn(usize) -> f32, M: Menus>(
         &mut self,
         crowd: &Crowd<'_, F, M>,
-        target: u64,
+        room: u64,
     ) -> [f32; 2] {
         self.list_every(crowd, (crowd.weight.len() / SAMPLE).max(1));
         let share = self.classes.len() as f64 / crowd.weight.len() as f64;
-        let [low, high] = self.cold_bracket((target as f64 * share) as u64, None);
+        let cheapest = |class| Class::new(&self.profiles, class).cost(0);
+        let cheapest = self.classes.iter().map(cheapest).fold(0, u64::saturating_add);
+        let [low, high] = self.cold_bracket(cheapest.saturating_add((room as f64 * share) as u64), None);
         [(low * 0.98).max(f32::MIN_POSITIVE), high * 1.02]
     }
 
