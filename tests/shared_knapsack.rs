@@ -453,7 +453,7 @@ proptest! {
             let own_class = |m: usize| {
                 let (profile, stay) = (scene.members[m].0.get(&scene.profiles), scene.members[m].2);
                 // Who is at the cheapest position may as well hold nothing.
-                let held = (m % 5 != 0 || classes[m].current > 0).then_some(held[m]);
+                let held = (!m.is_multiple_of(5) || classes[m].current > 0).then_some(held[m]);
                 (OwnClass { at: m as u32, weight: weight[m], stay, held }, profile.as_slice())
             };
             let own = OwnMembers((0..held.len()).filter(|&m| is(m, Kind::Own)).map(own_class).collect());

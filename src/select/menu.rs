@@ -123,10 +123,7 @@ impl Pricing<'_> {
             Stages::Sum => sums_us(columns, self.factors(candidate)),
             Stages::Max => maxima_us(columns, self.factors(candidate)),
         };
-        let mut ticks = [0.0; LANES];
-        for lane in 0..LANES {
-            ticks[lane] = whole_ticks(cost_us[lane] * self.ticks_per_us);
-        }
+        let ticks = cost_us.map(|cost_us| whole_ticks(cost_us * self.ticks_per_us));
         narrowed(columns.value, ticks, candidate.items.map(|item| f64::from(item) - (octet * LANES) as f64))
     }
 
@@ -250,8 +247,8 @@ impl Menus for FrameMenus<'_> {
 /// [`CostModel::object_us`] of every lane, where the stages add up.
 fn sums_us(columns: &Columns, [scale, pixels_us]: [f64; 2]) -> [f64; LANES] {
     let mut cost_us = [0.0; LANES];
-    for lane in 0..LANES {
-        cost_us[lane] = columns.geometry_us[lane] * scale + columns.drawn[lane] * pixels_us;
+    for (lane, cost_us) in cost_us.iter_mut().enumerate() {
+        *cost_us = columns.geometry_us[lane] * scale + columns.drawn[lane] * pixels_us;
     }
     cost_us
 }
@@ -259,9 +256,9 @@ fn sums_us(columns: &Columns, [scale, pixels_us]: [f64; 2]) -> [f64; LANES] {
 /// [`CostModel::object_us`] of every lane, where the slower stage counts.
 fn maxima_us(columns: &Columns, [scale, pixels_us]: [f64; 2]) -> [f64; LANES] {
     let mut cost_us = [0.0; LANES];
-    for lane in 0..LANES {
+    for (lane, cost_us) in cost_us.iter_mut().enumerate() {
         let (geometry, pixels) = (columns.geometry_us[lane] * scale, columns.drawn[lane] * pixels_us);
-        cost_us[lane] = if geometry > pixels { geometry } else { pixels };
+        *cost_us = if geometry > pixels { geometry } else { pixels };
     }
     cost_us
 }

@@ -284,8 +284,8 @@ const LANE: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 /// The greatest value of the items of so many ticks; 0 without one.
 fn value_of(octet: &Octet, ticks: f64) -> f64 {
     let mut value = octet.value;
-    for lane in 0..LANES {
-        value[lane] = if octet.ticks[lane] == ticks { -value[lane] } else { 0.0 };
+    for (value, &its_ticks) in value.iter_mut().zip(&octet.ticks) {
+        *value = if its_ticks == ticks { -*value } else { 0.0 };
     }
     -least(value)
 }
