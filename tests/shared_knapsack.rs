@@ -1,8 +1,8 @@
 //! The frame loop's greedy against slow twins: the textbook's greedy, from scratch, and exhaustive search.
 
 use lod_budget::knapsack::{
-    Crowd, Instance, Item, OddClass, Outcome, Position, ProfileItem, Profiles, SharedClass, SharedKnapsack,
-    exact,
+    Crowd, Ends, Instance, Item, Menus, Octet, OddClass, Outcome, OwnClass, Position, ProfileItem, Profiles,
+    SharedClass, SharedKnapsack, exact,
 };
 use proptest::prelude::*;
 
@@ -207,8 +207,12 @@ fn agrees(solver: &mut SharedKnapsack, classes: &[Class], budget: u64) -> Result
 
 /// Items whose values and ticks lie on coarse grids, so that slopes are often equal. No step is free after scaling.
 fn items() -> impl Strategy<Value = Vec<ProfileItem>> {
+    items_of(1..6)
+}
+
+fn items_of(count: std::ops::Range<usize>) -> impl Strategy<Value = Vec<ProfileItem>> {
     let point = (0u32..=16, 0u64..=24);
-    prop::collection::vec(point, 1..6).prop_map(|points| {
+    prop::collection::vec(point, count).prop_map(|points| {
         let item = |(i, (value, ticks)): (usize, (u32, u64))| ProfileItem {
             value: value as f32 / 16.0,
             ticks: ticks * 64,
@@ -325,18 +329,71 @@ proptest! {
 }
 
 /// A crowd: profiles, and per class the profile, the weight and the price of switching. What each class holds follows from
-/// call to call; an odd one holds nothing that is counted.
+/// call to call; an odd one holds nothing that is counted, and one of its own has the items and no profile.
 #[derive(Clone, Debug)]
 struct Scene {
     profiles: Vec<Vec<ProfileItem>>,
-    members: Vec<(prop::sample::Index, f32, f32, bool)>,
+    members: Vec<(prop::sample::Index, f32, f32, Kind)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    Holder,
+    Odd,
+    Own,
+}
+
+/// The members of a scene that have items of their own.
+struct OwnMembers<'a>(Vec<(OwnClass, &'a [ProfileItem])>);
+
+impl Menus for OwnMembers<'_> {
+    fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    fn ends(&self) -> Ends {
+        let mut ends = Ends::default();
+        for (_, items) in &self.0 {
+            let best = items.iter().map(|i| i.value).fold(0.0, f32::max);
+            let ticks = |least: f32| items.iter().filter(|i| i.value >= least).map(|i| i.ticks).min();
+            ends.add(ticks(0.0).expect("an item"), ticks(best).expect("an item"));
+        }
+        ends
+    }
+
+    fn class(&self, n: usize) -> OwnClass {
+        self.0[n].0
+    }
+
+    fn octets(&self, n: usize) -> usize {
+        self.0[n].1.len().div_ceil(8)
+    }
+
+    fn most_octets(&self) -> usize {
+        (0..self.len()).map(|n| self.octets(n)).max().unwrap_or(0)
+    }
+
+    fn octet(&self, n: usize, octet: usize) -> Octet {
+        let item = |lane: usize| self.0[n].1.get(octet * 8 + lane);
+        let [no_value, no_ticks] = Octet::NOTHING;
+        Octet {
+            value: std::array::from_fn(|lane| item(lane).map_or(no_value, |item| f64::from(item.value))),
+            ticks: std::array::from_fn(|lane| item(lane).map_or(no_ticks, |item| item.ticks as f64)),
+        }
+    }
+
+    fn code(&self, n: usize, item: u8) -> u8 {
+        self.0[n].1[usize::from(item)].item
+    }
 }
 
 fn scene() -> impl Strategy<Value = Scene> {
     let weight = prop_oneof![1 => Just(0.0f32), 2 => Just(1.0), 8 => 0.001f32..1000.0];
     let stay = prop_oneof![2 => Just(0.0f32), 1 => Just(0.2), 1 => Just(0.7)];
-    let member = (any::<prop::sample::Index>(), weight, stay, prop::bool::weighted(0.1));
-    (prop::collection::vec(items(), 1..5), prop::collection::vec(member, 0..120))
+    let kind = prop_oneof![6 => Just(Kind::Holder), 1 => Just(Kind::Odd), 4 => Just(Kind::Own)];
+    let member = (any::<prop::sample::Index>(), weight, stay, kind);
+    let items = prop_oneof![3 => items(), 1 => items_of(1..20)];
+    (prop::collection::vec(items, 1..5), prop::collection::vec(member, 0..120))
         .prop_map(|(profiles, members)| Scene { profiles, members })
 }
 
@@ -382,22 +439,30 @@ proptest! {
             let ease = (budget as f64 * ease) as u64;
             let weight: Vec<f32> =
                 scene.members.iter().enumerate().map(|(m, member)| member.1 * drift[m % drift.len()]).collect();
-            let is_odd = |m: usize| scene.members[m].3;
-            let place: Vec<u32> =
-                (0..held.len()).map(|m| if is_odd(m) { u32::MAX } else { item_at(m, held[m]) }).collect();
+            let is = |m: usize, kind: Kind| scene.members[m].3 == kind;
+            let place_of = |m: usize| if is(m, Kind::Holder) { item_at(m, held[m]) } else { u32::MAX };
+            let place: Vec<u32> = (0..held.len()).map(place_of).collect();
             let mut census = vec![0; starts[starts.len() - 1] as usize];
             place.iter().filter(|&&p| p != u32::MAX).for_each(|&p| census[p as usize] += 1);
             let class = |m: usize| listed.profiles.class_at(item_at(m, held[m]), weight[m], scene.members[m].2);
             let classes: Vec<SharedClass> = (0..held.len()).map(class).collect();
             let odd: Vec<OddClass> = (0..held.len())
-                .filter(|&m| is_odd(m))
+                .filter(|&m| is(m, Kind::Odd))
                 .map(|m| OddClass { at: m as u32, class: classes[m] })
                 .collect();
+            let own_class = |m: usize| {
+                let (profile, stay) = (scene.members[m].0.get(&scene.profiles), scene.members[m].2);
+                // Who is at the cheapest position may as well hold nothing.
+                let held = (!m.is_multiple_of(5) || classes[m].current > 0).then_some(held[m]);
+                (OwnClass { at: m as u32, weight: weight[m], stay, held }, profile.as_slice())
+            };
+            let own = OwnMembers((0..held.len()).filter(|&m| is(m, Kind::Own)).map(own_class).collect());
             listed.classes.clone_from(&classes);
             let plain = listed.solve(budget, ease, |m| m as u128);
             let stay = |m: usize| scene.members[m].2;
             let heaviest = weight.iter().copied().fold(0.0, f32::max);
-            let crowd = Crowd { weight: &weight, heaviest, place: &place, census: &census, odd: &odd, stay, threads: 1 };
+            let (weight, place, census, odd) = (&weight[..], &place[..], &census[..], &odd[..]);
+            let crowd = Crowd { weight, heaviest, place, census, odd, own, stay, threads: 1 };
             let outcome = crowded.solve_crowd(&crowd, budget, ease, |m| m as u128);
             let mut found = held.clone();
             crowded.changed().for_each(|(m, code)| found[m] = code);

@@ -28,9 +28,8 @@
 //! to arrange and tests up to a fifth more blocks.
 //!
 //! Objects that may be left out for their worth are arranged by classes of it, and by place within a class: a floor that
-//! leaves 20 000 of a million objects then looks at a third less and takes half the time, and from 100 000 objects to
-//! ten million looks at 2.3 times as much. Culling them by view alone takes one and a half times as long, so that
-//! all other objects are arranged by place alone.
+//! leaves 90 000 of a million objects then tests 30 000 one by one. Culling them by view alone takes twice as long, so
+//! that all other objects are arranged by place alone.
 //!
 //! Where objects move, the order is repaired a thousand objects or two at a time. With a million objects of which one in
 //! a hundred moves, an update takes 4 ms, of which repairs are half a millisecond; with all of them in motion 6 to

@@ -64,7 +64,8 @@ pub use instance::{Instance, InstanceError, Item};
 pub use json::InstanceJsonError;
 pub(crate) use shared::{Columns, Hold, Units, opened, sift};
 pub use shared::{
-    Crowd, OddClass, Offer, Outcome, Position, ProfileItem, Profiles, SharedClass, SharedKnapsack,
+    Crowd, Ends, Menus, Octet, OddClass, Offer, Outcome, OwnClass, Position, ProfileItem, Profiles,
+    SharedClass, SharedKnapsack,
 };
 pub use solution::Solution;
 pub use sum::FixedSum;

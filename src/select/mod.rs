@@ -5,6 +5,7 @@
 
 mod fixed;
 mod funkhouser_sequin;
+mod menu;
 mod predictive;
 mod reactive;
 mod screen_size;

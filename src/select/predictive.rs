@@ -1,10 +1,11 @@
 //! The predictive policy: the multiple-choice knapsack under the budget of this frame.
 
+use super::menu::{FrameMenus, MenuColumns, OwnCandidates, Pricing, whole_ticks};
 use super::steadiness::{Accounts, Optimum, Steadiness};
 use super::{Frame, Needs, Selector};
 use crate::frame::{Candidate, Candidates, Cause, Certificate, OptionsError, PixelSum, SelectReport};
-use crate::knapsack::{Crowd, OddClass, Outcome, ProfileItem, SharedClass, SharedKnapsack};
-use crate::rate::{Stages, TableRates, cost_us};
+use crate::knapsack::{Crowd, Menus, OddClass, Outcome, ProfileItem, SharedClass, SharedKnapsack};
+use crate::rate::{Stages, TableRates};
 use crate::scene::{BLOCK, LevelRange};
 use crate::table::Level;
 
@@ -74,8 +75,9 @@ pub struct Predictive {
     options: PredictiveOptions,
     knapsack: SharedKnapsack,
     hulls: Hulls,
-    /// Candidates whose class is not simply that of a level of their table.
+    /// Candidates whose class is not simply that of a level of their table, and those that share no hull.
     odd: Vec<OddClass>,
+    own: OwnCandidates,
     accounts: Accounts,
     /// Candidates that are held coarser than the optimum, ascending.
     owed: Vec<u32>,
@@ -84,9 +86,6 @@ pub struct Predictive {
     /// See [`FALL`].
     fall: f64,
 }
-
-/// Marks a class whose hull is yet to be made.
-const OWN: u32 = u32::MAX;
 
 /// The class of a candidate that has just come into view and asks for nothing special, where that can be told without
 /// its details.
@@ -121,44 +120,39 @@ impl Predictive {
     /// are narrowed, may be skipped, or cost more than their table says. Returns the ticks that are spent whatever is
     /// chosen.
     fn fill_odd(&mut self, frame: &Frame<'_>) -> u64 {
-        let candidates = frame.candidates;
-        let mut pixels = candidates.pixels;
+        let mut pixels = frame.candidates.pixels;
         self.odd.clear();
-        for i in candidates.unplaced() {
-            let class = match plain_newcomer(frame, i) {
-                Some(class) => class,
-                None => self.odd_class(frame, i, &mut pixels),
-            };
-            self.odd.push(OddClass { at: i as u32, class });
+        self.own.clear();
+        for i in frame.candidates.unplaced() {
+            if let Some(class) = plain_newcomer(frame, i) {
+                self.odd.push(OddClass { at: i as u32, class });
+                continue;
+            }
+            let candidate = frame.candidate(i);
+            if has_own_hull(frame, &candidate) {
+                pixels.add(-PixelSum::rounded(candidate.area_px2));
+                self.push_own(frame, i, &candidate);
+            } else {
+                self.push_odd(frame, i, &candidate);
+            }
         }
-        self.make_own_hulls(frame);
         ceil_ticks(frame.model.pixel_us * self.hulls.ticks_per_us * pixels.px2())
     }
 
-    /// A class by all that its candidate asks. Its own hull is yet to be made, and what it holds to be found.
-    fn odd_class(&mut self, frame: &Frame<'_>, i: usize, pixels: &mut PixelSum) -> SharedClass {
-        let candidate = frame.candidate(i);
-        let own = has_own_hull(frame, &candidate);
-        if own {
-            pixels.add(-PixelSum::rounded(candidate.area_px2));
-        }
-        let profile = if own { OWN } else { self.hulls.shared(&candidate, frame.rates, &mut self.knapsack) };
-        let scale = if own { 1.0 } else { candidate.cost_scale };
-        let stay = self.options.price(frame.candidates.previous(i), || frame.age_ms(i));
-        SharedClass { profile, weight: candidate.weight, scale, stay, current: 0 }
+    fn push_own(&mut self, frame: &Frame<'_>, i: usize, candidate: &Candidate) {
+        let previous = frame.candidates.previous(i);
+        let stay = self.options.price(previous, || frame.age_ms(i));
+        self.own.push(i, candidate, previous, stay, &self.hulls.pricing(frame));
     }
 
-    /// Makes the hulls that are not shared, after all that are, and finds what is held.
-    fn make_own_hulls(&mut self, frame: &Frame<'_>) {
-        for OddClass { at, class } in &mut self.odd {
-            let i = *at as usize;
-            if class.profile == OWN {
-                class.profile = self.hulls.own(frame, &frame.candidate(i), &mut self.knapsack);
-            }
-            if let Some(level) = frame.candidates.previous(i) {
-                class.current = self.knapsack.profiles.position_of(class.profile, level.0);
-            }
-        }
+    fn push_odd(&mut self, frame: &Frame<'_>, i: usize, candidate: &Candidate) {
+        let previous = frame.candidates.previous(i);
+        let profile = self.hulls.shared(candidate, frame.rates, &mut self.knapsack);
+        let current = previous.map_or(0, |level| self.knapsack.profiles.position_of(profile, level.0));
+        let stay = self.options.price(previous, || frame.age_ms(i));
+        let (weight, scale) = (candidate.weight, candidate.cost_scale);
+        let class = SharedClass { profile, weight, scale, stay, current };
+        self.odd.push(OddClass { at: i as u32, class });
     }
 
     /// The optimum up to `budget` in `levels`, the dead band being above `ease`. Under steadiness `levels` are led there
@@ -166,8 +160,9 @@ impl Predictive {
     fn solve(&mut self, frame: &Frame<'_>, budget: u64, ease: u64, levels: &mut [Level]) -> Outcome {
         let &Candidates { ref weight, heaviest, ref place, ref census, .. } = frame.candidates;
         let stay = |i: usize| self.options.price(frame.candidates.previous(i), || frame.age_ms(i));
-        let odd = &self.odd;
-        let crowd = Crowd { weight, heaviest, place, census, odd, stay, threads: frame.threads };
+        let own = FrameMenus { own: &self.own, pricing: self.hulls.pricing(frame) };
+        let (odd, threads) = (&self.odd, frame.threads);
+        let crowd = Crowd { weight, heaviest, place, census, odd, own, stay, threads };
         let Some(steadiness) = &self.options.steadiness else {
             let outcome = self.knapsack.solve_crowd(&crowd, budget, ease, |i| frame.key(i));
             self.knapsack.changed().for_each(|(i, item)| levels[i] = Level(item));
@@ -228,7 +223,6 @@ impl Selector for Predictive {
         let ease = (budget as f64 * (1.0 - self.options.dead_band())) as u64;
         let free = |ticks: u64| ticks.saturating_sub(fixed);
         let outcome = self.solve(frame, free(budget), free(ease), levels);
-        self.knapsack.profiles.truncate(self.hulls.shared_count as usize);
         self.lambda = outcome.lambda * self.hulls.ticks_per_us;
         let fell = self.lambda < frame.floor;
         self.fall = if fell { *FALL.start() } else { (self.fall * TRUST).clamp(*FALL.start(), *FALL.end()) };
@@ -283,10 +277,10 @@ impl Selector for Predictive {
 
 /// Opens the account of every candidate that does not hold the level the knapsack has for it. Who has just come into view,
 /// and whose level is allowed no longer, takes it at once.
-fn open_accounts<F: Fn(usize) -> f32>(
+fn open_accounts<F: Fn(usize) -> f32, M: Menus>(
     accounts: &mut Accounts,
     knapsack: &SharedKnapsack,
-    crowd: &Crowd<'_, F>,
+    crowd: &Crowd<'_, F, M>,
     frame: &Frame<'_>,
     levels: &mut [Level],
 ) {
@@ -294,11 +288,8 @@ fn open_accounts<F: Fn(usize) -> f32>(
     for (i, item) in knapsack.changed() {
         let best = Level(item);
         let previous = frame.candidates.previous(i).filter(|&held| held != best);
-        let class = previous.map(|held| (held, crowd.class(&knapsack.profiles, i)));
-        let offers = class.and_then(|(held, class)| {
-            let offer = |level: Level| knapsack.profiles.offer(&class, level.0);
-            Some([offer(held)?, offer(best)?])
-        });
+        let offer = |level: Level| crowd.offer(&knapsack.profiles, i, level.0);
+        let offers = previous.and_then(|held| Some([offer(held)?, offer(best)?]));
         match offers {
             Some(offers) => {
                 accounts.open((i as u32, frame.key(i)), best, offers, frame.account(i));
@@ -309,12 +300,12 @@ fn open_accounts<F: Fn(usize) -> f32>(
 }
 
 /// Which profile of the knapsack holds the hull of which table and range of levels. Made as they are met, kept until
-/// the rates change.
+/// the rates change, as are the columns that make hulls for one candidate alone.
 #[derive(Clone, Debug, Default)]
 struct Hulls {
     rates_revision: u64,
     ticks_per_us: f64,
-    shared_count: u32,
+    columns: MenuColumns,
     by_table: Vec<Vec<(LevelRange, u32)>>,
     items: Vec<ProfileItem>,
 }
@@ -332,7 +323,7 @@ impl Hulls {
         }
         self.rates_revision = frame.rates.revision();
         self.ticks_per_us = ticks_per_us(frame.rates);
-        self.shared_count = 0;
+        self.columns.renew(frame.rates);
         knapsack.profiles.truncate(0);
         self.by_table.iter_mut().for_each(Vec::clear);
         self.by_table.resize(frame.rates.tables(), Vec::new());
@@ -370,25 +361,12 @@ impl Hulls {
             ticks: ceil_ticks(rate.geometry_us * tick),
             item: level.0,
         }));
-        self.shared_count = knapsack.profiles.push(&self.items) + 1;
-        self.shared_count - 1
+        knapsack.profiles.push(&self.items)
     }
 
-    /// A profile for this candidate and frame alone, its whole cost in the ticks.
-    fn own(&mut self, frame: &Frame<'_>, candidate: &Candidate, knapsack: &mut SharedKnapsack) -> u32 {
-        let tick = self.ticks_per_us;
-        let item = |level: Level, value: f32| ProfileItem {
-            value,
-            ticks: ceil_ticks(cost_us(frame.model, frame.rates, candidate, level) * tick),
-            item: level.0,
-        };
-        let Candidate { table, allowed, .. } = *candidate;
-        self.items.clear();
-        self.items.extend(frame.rates.drawn(table, allowed).map(|(level, rate)| item(level, rate.accuracy)));
-        if !allowed.coarsest.is_drawn() {
-            self.items.push(item(Level::NOT_DRAWN, 0.0));
-        }
-        knapsack.profiles.push(&self.items)
+    /// What prices the candidates that share no hull.
+    fn pricing<'a>(&'a self, frame: &Frame<'a>) -> Pricing<'a> {
+        Pricing { columns: &self.columns, model: frame.model, ticks_per_us: self.ticks_per_us }
     }
 }
 
@@ -408,6 +386,5 @@ fn power_of_two(exponent: i32) -> f64 {
 
 /// Rounds up; beyond 2⁶² ticks it holds.
 fn ceil_ticks(ticks: f64) -> u64 {
-    let floor = ticks as u64;
-    (floor + u64::from((floor as f64) < ticks)).min(1 << 62)
+    whole_ticks(ticks) as u64
 }

@@ -16,11 +16,13 @@
 mod certificate;
 mod class;
 mod crowd;
+mod menus;
 mod profiles;
 mod sift;
 
 pub use certificate::Outcome;
 pub use crowd::{Crowd, OddClass};
+pub use menus::{Ends, Menus, Octet, OwnClass};
 pub use profiles::{Offer, Position, ProfileItem, Profiles};
 pub(crate) use sift::{Columns, Hold, Units, opened, sift};
 
@@ -44,11 +46,6 @@ pub struct SharedClass {
     pub current: u8,
 }
 
-impl SharedClass {
-    /// A class of no weight.
-    const NOTHING: Self = Self { profile: 0, weight: 0.0, scale: 1.0, stay: 0.0, current: 0 };
-}
-
 /// Solver with its scratch and the memory of the last λ. Fill `profiles` and `classes`, call
 /// [`SharedKnapsack::solve`], read `chosen`.
 #[derive(Clone, Debug, Default)]
@@ -69,22 +66,26 @@ pub struct SharedKnapsack {
     aside: Aside,
     /// A bit per class of the crowd: it is not settled.
     open: Vec<u16>,
+    /// How many profiles there were at the start of the call. Others were made for its classes.
+    shared: usize,
     opened: Vec<u32>,
     histogram: Vec<u64>,
     rival: Vec<u8>,
     affordable: Vec<ProfileItem>,
 }
 
-/// Where the last λ was and how far around it to look.
+/// Where the last λ was, where it is going, and how far around there to look.
 #[derive(Clone, Copy, Debug)]
 struct Bracket {
     lambda: f32,
+    /// By what factor it is expected to move.
+    drift: f32,
     width: f32,
 }
 
 impl Default for Bracket {
     fn default() -> Self {
-        Self { lambda: 0.0, width: *WIDTH.start() }
+        Self { lambda: 0.0, drift: 1.0, width: *WIDTH.start() }
     }
 }
 
@@ -166,6 +167,10 @@ impl Critical {
 /// a pass for the histogram and one for the survey.
 const WIDTH: std::ops::RangeInclusive<f32> = 0.01..=0.1;
 
+/// How far λ is expected to go on moving from one call to the next, as a factor. Further apart follows faster drives, and
+/// expects more of a jump.
+const DRIFT: std::ops::RangeInclusive<f32> = 0.8..=1.25;
+
 /// Histogram buckets: the 12 highest of the 31 bits of a positive float, so that a bucket spans at most 1/16 of its
 /// slope. More buckets leave the first-level cache, fewer leave more steps to sort.
 const BUCKETS: usize = 1 << 12;
@@ -224,7 +229,7 @@ impl SharedKnapsack {
             survey = self.survey(self.warm_bracket(), None);
         }
         let critical = self.greedy(survey, target, None, key);
-        self.bracket.lambda = critical.lambda;
+        self.bracket.follow(critical.lambda);
         let sums = self.certify(critical.lambda);
         let outcome = Outcome { steps: critical.steps, ..sums.outcome(budget, &self.aside) };
         match critical.step {
@@ -274,9 +279,9 @@ impl SharedKnapsack {
         if survey.widest > room && self.classes.iter().any(kept_out) { budget } else { target }
     }
 
-    /// The bracket around the last λ; an empty one at the top when there is none.
+    /// The bracket around where the last λ is going; an empty one at the top when there is none.
     fn warm_bracket(&self) -> [f32; 2] {
-        let Bracket { lambda, width, .. } = self.bracket;
+        let (lambda, width) = (self.bracket.expected(), self.bracket.width);
         if lambda > 0.0 {
             // Farther below than above, so that the first fill window is in it.
             [(lambda * (0.99 - 1.5 * width)).max(f32::MIN_POSITIVE), lambda * (1.0 + width)]
@@ -361,7 +366,6 @@ impl SharedKnapsack {
     /// The survey if the budget lies inside its bracket, else one of the histogram's bracket.
     fn bracketed(&mut self, survey: Survey, budget: u64, pin: Option<Pin>) -> Survey {
         if survey.above <= budget && budget < survey.down_to {
-            self.bracket.narrow();
             return survey;
         }
         self.bracket.widen();
@@ -477,13 +481,25 @@ impl SharedKnapsack {
 }
 
 impl Bracket {
-    /// After a hit.
-    fn narrow(&mut self) {
-        self.width = (self.width * 0.9).max(*WIDTH.start());
+    fn expected(&self) -> f32 {
+        self.lambda * self.drift
     }
 
-    /// After a miss.
+    /// After λ has been found: so wide that it could have been twice as far from where it was expected, and not much wider.
+    fn follow(&mut self, lambda: f32) {
+        if self.lambda > 0.0 {
+            let missed = (lambda / self.expected() - 1.0).abs();
+            self.width = (self.width * 0.5).max(2.0 * missed).clamp(*WIDTH.start(), *WIDTH.end());
+            let moved = (lambda / self.lambda).clamp(*DRIFT.start(), *DRIFT.end());
+            self.drift = 0.5 * (self.drift + moved);
+        }
+        self.lambda = lambda;
+    }
+
+    /// After a miss, if there was a λ to go by.
     fn widen(&mut self) {
-        self.width = (self.width * 4.0).min(*WIDTH.end());
+        if self.lambda > 0.0 {
+            self.width = (self.width * 4.0).min(*WIDTH.end());
+        }
     }
 }

@@ -80,6 +80,16 @@ impl Profiles {
         self.holds.push(Hold::OPEN);
     }
 
+    /// Makes room for so many more profiles, and items of all of them. None of it is touched until it is used.
+    pub(super) fn reserve(&mut self, profiles: usize, items: usize) {
+        self.spans.reserve(profiles);
+        self.positions.reserve(items);
+        self.items.reserve(items);
+        self.owner.reserve(items);
+        self.held.reserve(items);
+        self.holds.reserve(items);
+    }
+
     /// How many profiles there are.
     pub fn len(&self) -> usize {
         self.spans.len()
@@ -92,11 +102,18 @@ impl Profiles {
 
     /// Adds the profile of these items, of which there must be one at least, and returns its number.
     pub fn push(&mut self, items: &[ProfileItem]) -> u32 {
+        self.push_all(items.iter().copied())
+    }
+
+    /// [`Profiles::push`] of items that are not in a slice.
+    pub(super) fn push_all(&mut self, items: impl Iterator<Item = ProfileItem>) -> u32 {
+        let first = (self.positions.len(), self.items.len());
+        self.items.extend(items);
+        let items = &self.items[first.1..];
         let point = |i: &ProfileItem| Item { cost: i.ticks as f64, benefit: f64::from(i.value) };
         self.points.clear();
         self.points.extend(items.iter().map(point));
         upper_hull(&self.points, &mut self.hull);
-        let first = (self.positions.len(), self.items.len());
         for (at, &i) in self.hull.iter().enumerate() {
             let next = self.hull.get(at + 1).map(|&n| items[n as usize]);
             self.positions.push(position(items[i as usize], next));
@@ -107,7 +124,6 @@ impl Profiles {
         self.holds.pop();
         self.holds.extend(items.iter().map(|item| hold(positions, item)));
         self.holds.push(Hold::OPEN);
-        self.items.extend_from_slice(items);
         self.spans.push(Span {
             positions: (first.0 as u32, self.positions.len() as u32),
             items: (first.1 as u32, self.items.len() as u32),
