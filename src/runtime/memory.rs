@@ -51,7 +51,7 @@ struct BlockAccounts {
 }
 
 impl BlockAccounts {
-    const EMPTY: Self = Self { account: [Account { owed_ms: 0, drops: 0 }; BLOCK], owing: 0, frame: 0 };
+    const EMPTY: Self = Self { account: [Account::NEW; BLOCK], owing: 0, frame: 0 };
 
     /// What was owed at the end of a frame, and the drops.
     fn get(&self, lane: usize, frame: u32) -> Account {
@@ -252,7 +252,7 @@ impl GroupMemory {
             let age_ms = since_ms.wrapping_sub(memory.since_ms[lane]);
             let account = accounts.account[lane].after(0, age_ms);
             let drops = account.drops.saturating_add(put_in);
-            accounts.set(lane, self.frame, Account { owed_ms: 0, drops });
+            accounts.set(lane, self.frame, Account { owed_ms: 0, drops, from: memory.wanted[lane] });
         }
         memory.set(slot, wanted, place, since_ms);
     }

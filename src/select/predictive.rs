@@ -1,6 +1,6 @@
 //! The predictive policy: the multiple-choice knapsack under the budget of this frame.
 
-use super::steadiness::{Accounts, Optimum, Steadiness};
+use super::steadiness::{Accounts, Held, Optimum, Steadiness};
 use super::{Frame, Needs, Selector};
 use crate::frame::{Candidate, Candidates, Cause, Certificate, OptionsError, PixelSum, SelectReport};
 use crate::knapsack::{Crowd, OddClass, Outcome, ProfileItem, SharedClass, SharedKnapsack};
@@ -289,18 +289,18 @@ fn open_accounts<F: Fn(usize) -> f32>(
     levels: &mut [Level],
 ) {
     accounts.clear();
+    let Candidates { previous, age_ms, .. } = frame.candidates;
     for (i, item) in knapsack.changed() {
         let best = Level(item);
-        let previous = frame.candidates.previous[i].filter(|&held| held != best);
-        let class = previous.map(|held| (held, crowd.class(&knapsack.profiles, i)));
-        let offers = class.and_then(|(held, class)| {
+        let held = previous[i].filter(|&level| level != best);
+        let offers = held.and_then(|level| {
+            let class = crowd.class(&knapsack.profiles, i);
             let offer = |level: Level| knapsack.profiles.offer(&class, level.0);
-            Some([offer(held)?, offer(best)?])
+            let account = frame.candidates.account_of(i);
+            Some((Held { level, age_ms: age_ms[i], account }, [offer(level)?, offer(best)?]))
         });
         match offers {
-            Some(offers) => {
-                accounts.open((i as u32, frame.key(i)), best, offers, frame.candidates.account_of(i));
-            }
+            Some((held, offers)) => accounts.open((i as u32, frame.key(i)), best, held, offers),
             None => levels[i] = best,
         }
     }
