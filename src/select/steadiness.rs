@@ -60,13 +60,13 @@ const FIRST_MS: f64 = 16.0;
 impl Default for Steadiness {
     fn default() -> Self {
         Self {
-            patience_s: 0.02,
+            patience_s: 0.022,
             turn: 2.0,
             margin: 3.0,
             soon_ms: 250,
             longest_ms: 1000,
-            content: 0.0005,
-            spare: 0.06,
+            content: 0.002,
+            spare: 0.05,
             burst: 4,
         }
     }
