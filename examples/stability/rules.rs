@@ -5,8 +5,11 @@ use lod_budget::frame::{OptionsError, SelectReport};
 use lod_budget::knapsack::{Item, Step, upper_hull};
 use lod_budget::select::{Frame, Predictive, PredictiveOptions, Selector, Steadiness};
 
+/// A rule and its name.
+type Rule = (&'static str, Box<dyn Selector>);
+
 /// All of them; the first is what the others are compared with.
-pub fn all() -> Result<[(&'static str, Box<dyn Selector>); 6], OptionsError> {
+pub fn all() -> Result<[Rule; 6], OptionsError> {
     Ok([
         ("plain", Box::new(plain()?)),
         ("stop rule", Box::new(InOrder::new(false))),
