@@ -81,16 +81,28 @@ pub struct Candidates {
 }
 
 /// What is remembered of an object for a policy that does not show at once all that it has chosen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Account {
     /// For how long the policy has held back a finer level, at most what 16 bits hold; 0 when it does not.
     pub owed_ms: u16,
     /// What is in the leaky bucket that counts refinements: each puts in [`Account::REFINEMENT_DROPS`], each
     /// [`Account::LEAK_MS`] takes one drop away.
     pub drops: u8,
+    /// The level that was wanted before the one that is. Any level where that is not known; then the one that is has been
+    /// wanted for long.
+    pub from: Level,
+}
+
+impl Default for Account {
+    fn default() -> Self {
+        Self::NEW
+    }
 }
 
 impl Account {
+    /// That of an object that has just come into view.
+    pub const NEW: Self = Self { owed_ms: 0, drops: 0, from: Level::FINEST };
+
     /// So many drops a refinement puts into the bucket.
     pub const REFINEMENT_DROPS: u8 = 16;
     /// Time in which the bucket loses a drop.
@@ -100,7 +112,7 @@ impl Account {
     pub(crate) fn after(self, owed_for_ms: u16, leaking_for_ms: u32) -> Self {
         let leaked = (leaking_for_ms / Self::LEAK_MS).min(u32::from(u8::MAX)) as u8;
         let owed_ms = if self.owed_ms > 0 { self.owed_ms.saturating_add(owed_for_ms) } else { 0 };
-        Self { owed_ms, drops: self.drops.saturating_sub(leaked) }
+        Self { owed_ms, drops: self.drops.saturating_sub(leaked), ..self }
     }
 }
 

@@ -523,8 +523,8 @@ fn stopping_early_wastes_budget_playcanvas() {
         let (finest, cheapest) = finest_and_cheapest_us();
         step(&mut runtime, &mut objects, camera(), (cheapest + share * (finest - cheapest)) / 0.75);
         let (report, budget) = (runtime.report().select, runtime.report().budget.select_us);
-        // The dead band of the budget leaves three percent, and what they would buy is known.
-        assert!(report.cost_us <= budget && report.cost_us > 0.96 * budget, "{report:?} of {budget}");
+        // The dead band of the budget leaves five percent, and what they would buy is known.
+        assert!(report.cost_us <= budget && report.cost_us > 0.94 * budget, "{report:?} of {budget}");
         assert!(report.certificate.is_some_and(|c| c.gap < 0.02), "{report:?}");
     }
 }

@@ -40,8 +40,7 @@ struct BlockAccounts {
 }
 
 impl BlockAccounts {
-    const EMPTY: Self =
-        Self { account: [Account { owed_ms: 0, drops: 0 }; BLOCK], owing: 0, owing_before: 0, frame: 0 };
+    const EMPTY: Self = Self { account: [Account::NEW; BLOCK], owing: 0, owing_before: 0, frame: 0 };
 
     /// What was owed at the end of a frame, the last one or the one before, and the drops.
     fn get(&self, lane: usize, frame: u32) -> Account {
@@ -330,10 +329,10 @@ impl GroupMemory {
         let (block, lane) = (slot as usize / BLOCK, slot as usize % BLOCK);
         let age_ms = self.age_ms(slot);
         if let Some(accounts) = self.accounts.get_mut(block) {
-            let is_finer = wanted < self.blocks[block].wanted[lane];
-            let put_in = if is_finer { Account::REFINEMENT_DROPS } else { 0 };
+            let from = self.blocks[block].wanted[lane];
+            let put_in = if wanted < from { Account::REFINEMENT_DROPS } else { 0 };
             let drops = accounts.account[lane].after(0, age_ms).drops.saturating_add(put_in);
-            accounts.set(lane, self.frame, Account { owed_ms: 0, drops });
+            accounts.set(lane, self.frame, Account { owed_ms: 0, drops, from });
         }
         self.since_ms[block][lane] = whole_ms(self.clock_ms);
         self.set(slot, wanted, place);

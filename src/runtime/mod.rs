@@ -254,14 +254,14 @@ impl Runtime {
         self.changes.clear();
         self.clock_ms += elapsed_ms(input.dt_s);
         self.feedback.measure(input.measured);
-        self.tree.update(objects);
-        self.layout.follow(objects, &mut self.groups, &mut self.changes);
         let rated = Rated { tables: objects.tables().len(), model_revision: self.feedback.model_revision() };
         if self.rated != Some(rated) {
             self.rates.renew(objects.tables(), self.feedback.model());
             self.tree.expect_slopes(self.rates.best_slopes());
             self.rated = Some(rated);
         }
+        self.tree.update(objects);
+        self.layout.follow(objects, &mut self.groups, &mut self.changes);
     }
 
     /// Whether the selection may leave out any object.

@@ -1,7 +1,7 @@
 //! The predictive policy: the multiple-choice knapsack under the budget of this frame.
 
 use super::menu::{FrameMenus, MenuColumns, OwnCandidates, Pricing, whole_ticks};
-use super::steadiness::{Accounts, Optimum, Steadiness};
+use super::steadiness::{Accounts, Held, Optimum, Steadiness};
 use super::{Frame, Needs, Selector};
 use crate::frame::{Candidate, Candidates, Cause, Certificate, OptionsError, PixelSum, SelectReport};
 use crate::knapsack::{Crowd, Menus, OddClass, Outcome, ProfileItem, SharedClass, SharedKnapsack};
@@ -287,13 +287,14 @@ fn open_accounts<F: Fn(usize) -> f32, M: Menus>(
     accounts.clear();
     for (i, item) in knapsack.changed() {
         let best = Level(item);
-        let previous = frame.candidates.previous(i).filter(|&held| held != best);
+        let held = frame.candidates.previous(i).filter(|&level| level != best);
         let offer = |level: Level| crowd.offer(&knapsack.profiles, i, level.0);
-        let offers = previous.and_then(|held| Some([offer(held)?, offer(best)?]));
+        let offers = held.and_then(|level| {
+            let held = Held { level, age_ms: frame.age_ms(i), account: frame.account(i) };
+            Some((held, [offer(level)?, offer(best)?]))
+        });
         match offers {
-            Some(offers) => {
-                accounts.open((i as u32, frame.key(i)), best, offers, frame.account(i));
-            }
+            Some((held, offers)) => accounts.open((i as u32, frame.key(i)), best, held, offers),
             None => levels[i] = best,
         }
     }

@@ -12,6 +12,10 @@
 //!   price of a switch: at once where much is owed, later where little is, never where the optimum changes its mind
 //!   before. That is the break-even rule of renting or buying skis, which knows no future and pays at most twice what it
 //!   would have paid had it known (Karlin, Manasse, Rudolph and Sleator, "Competitive snoopy caching", 1988).
+//! - What lies just above λ is the first that the optimum changes its mind about. So a debt counts only by what it is
+//!   worth beyond a few times λ; one that is worth more than that is paid soon however little it is, one that is worth
+//!   less must wait.
+//! - An object that was coarsened a moment ago would turn back. Refining it costs more than a switch.
 //! - While all that is owed together is next to nothing, nothing is due: a camera at rest stays at rest under noise.
 //! - Budget that would stay unspent, beyond a dead band, goes to debts that are not due, those of the most benefit
 //!   first: that takes the fewest switches. Without it one dear level that is worth next to nothing leaves half the
@@ -27,11 +31,19 @@ use crate::table::Level;
 /// Options of a policy's steadiness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steadiness {
-    /// Price of a switch: an object is refined when the benefit it is owed, less what its cost is worth elsewhere, times
-    /// the time it has been owed, comes to so many seconds of the mean object's gain. From 0 to 3600.
-    /// Higher switches less and shows later what is owed.
+    /// Price of a switch: an object is refined when its surplus, times the time it has been owed, comes to so many
+    /// seconds of the mean object's gain. Its surplus is the benefit it is owed less what its cost is worth elsewhere, by
+    /// `margin`. From 0 to 3600. Higher switches less and shows later what is owed.
     pub patience_s: f32,
-    /// What has been owed for so long is paid however little it is. Decides when the last detail arrives.
+    /// The price is so many times higher for an object that was coarsened less than a second ago. From 1 to 1000.
+    pub turn: f32,
+    /// So many times the going rate of benefit per cost counts as what a cost is worth elsewhere: the going rate moves,
+    /// and what lies just above it comes and goes. From 1 to 1000.
+    pub margin: f32,
+    /// What has a surplus and has been owed for so long is paid however little it is, but for what was coarsened less
+    /// than a second ago.
+    pub soon_ms: u16,
+    /// What has been owed for so long is paid in any case. Decides when the last detail arrives.
     pub longest_ms: u16,
     /// While no more than this share of the gain is owed in all, nothing is due. In 0…1, exclusive.
     pub content: f64,
@@ -47,7 +59,16 @@ const FIRST_MS: f64 = 16.0;
 
 impl Default for Steadiness {
     fn default() -> Self {
-        Self { patience_s: 0.05, longest_ms: 1000, content: 0.002, spare: 0.03, burst: 4 }
+        Self {
+            patience_s: 0.022,
+            turn: 2.0,
+            margin: 3.0,
+            soon_ms: 250,
+            longest_ms: 1000,
+            content: 0.002,
+            spare: 0.05,
+            burst: 4,
+        }
     }
 }
 
@@ -59,6 +80,9 @@ impl Steadiness {
     pub fn check(&self) -> Result<(), OptionsError> {
         let patience = (0.0..=3600.0).contains(&self.patience_s);
         OptionsError::unless(patience, "patience_s", "must be from 0 to 3600")?;
+        let factor = |x: f32| (1.0..=1000.0).contains(&x);
+        OptionsError::unless(factor(self.turn), "turn", "must be from 1 to 1000")?;
+        OptionsError::unless(factor(self.margin), "margin", "must be from 1 to 1000")?;
         let content = (0.0..1.0).contains(&self.content);
         OptionsError::unless(content, "content", "must be at least 0 and below 1")?;
         OptionsError::unless((0.0..=1.0).contains(&self.spare), "spare", "must be from 0 to 1")?;
@@ -73,9 +97,16 @@ impl Steadiness {
     /// Whether a debt is due. O(1).
     fn is_due(&self, debt: &Debt, optimum: &Optimum) -> bool {
         let seconds = (f64::from(debt.account.owed_ms) + FIRST_MS) / 1e3;
-        let surplus = debt.benefit - optimum.lambda * debt.cost as f64;
-        let price = f64::from(self.patience_s) * optimum.gain;
-        surplus * seconds * optimum.objects as f64 >= price || debt.account.owed_ms >= self.longest_ms
+        let surplus = debt.benefit - f64::from(self.margin) * optimum.lambda * debt.cost as f64;
+        let turn = if debt.turns { f64::from(self.turn) } else { 1.0 };
+        let price = f64::from(self.patience_s) * turn * optimum.gain;
+        surplus * seconds * optimum.objects as f64 >= price
+            || debt.account.owed_ms >= self.wait_ms(debt, surplus)
+    }
+
+    /// After how long a debt is due however little it is.
+    fn wait_ms(&self, debt: &Debt, surplus: f64) -> u16 {
+        if debt.turns || surplus <= 0.0 { self.longest_ms } else { self.soon_ms.min(self.longest_ms) }
     }
 
     /// Whether so little is owed that nothing is due.
@@ -83,6 +114,27 @@ impl Steadiness {
         let mut owed = FixedSum::default();
         debts.iter().for_each(|debt| owed.add(debt.benefit / optimum.gain));
         owed.value() <= self.content
+    }
+}
+
+/// A change back within this time is a reversal.
+const TURN_MS: u32 = 1000;
+
+/// What an object holds whose optimum is another level.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Held {
+    /// The level.
+    pub level: Level,
+    /// For how long.
+    pub age_ms: u32,
+    /// What is remembered of it.
+    pub account: Account,
+}
+
+impl Held {
+    /// Whether it was coarsened so short a time ago that to refine it is to turn back.
+    fn was_finer(&self) -> bool {
+        self.age_ms <= TURN_MS && self.account.from < self.level
     }
 }
 
@@ -116,6 +168,8 @@ pub(super) struct Debt {
     pub cost: u64,
     /// What is remembered of it.
     pub account: Account,
+    /// Whether it was coarsened a moment ago.
+    pub turns: bool,
     /// Breaks ties.
     pub key: u128,
 }
@@ -164,19 +218,13 @@ impl Accounts {
 
     /// Opens the account of a candidate whose optimum is another level than it holds. Where the optimum's is better at
     /// no more cost, or cheaper at no less benefit, it is settled without more ado.
-    pub fn open(
-        &mut self,
-        (candidate, key): (u32, u128),
-        best: Level,
-        [held, new]: [Offer; 2],
-        account: Account,
-    ) {
-        let benefit = new.benefit - held.benefit;
-        if new.ticks > held.ticks && benefit > 0.0 {
-            let cost = new.ticks - held.ticks;
-            self.debts.push(Debt { candidate, best, benefit, cost, account, key });
-        } else if new.ticks < held.ticks && benefit < 0.0 {
-            let cost = held.ticks - new.ticks;
+    pub fn open(&mut self, (candidate, key): (u32, u128), best: Level, held: Held, [old, new]: [Offer; 2]) {
+        let benefit = new.benefit - old.benefit;
+        if new.ticks > old.ticks && benefit > 0.0 {
+            let (cost, account, turns) = (new.ticks - old.ticks, held.account, held.was_finer());
+            self.debts.push(Debt { candidate, best, benefit, cost, account, turns, key });
+        } else if new.ticks < old.ticks && benefit < 0.0 {
+            let cost = old.ticks - new.ticks;
             self.credits.push(Credit { candidate, best, benefit: -benefit, cost, key });
         } else {
             self.settled.push((candidate, best));
@@ -258,12 +306,23 @@ mod tests {
 
     use super::*;
 
-    /// Benefit, ticks, and what is remembered.
-    type Entry = (f64, u64, Account);
+    /// Benefit, ticks, and what is held.
+    type Entry = (f64, u64, Held);
+
+    /// Holds level 2 for so long, after level `from`.
+    fn held(age_ms: u32, from: u8, owed_ms: u16, drops: u8) -> Held {
+        Held { level: Level(2), age_ms, account: Account { owed_ms, drops, from: Level(from) } }
+    }
+
+    /// Holds what it holds for long.
+    fn owed(owed_ms: u16) -> Held {
+        held(u32::MAX, 0, owed_ms, 0)
+    }
 
     fn entry() -> impl Strategy<Value = Entry> {
-        let account = (0..2000u16, any::<u8>()).prop_map(|(owed_ms, drops)| Account { owed_ms, drops });
-        (prop_oneof![0.0..10.0, Just(1.0)], 1..1000u64, account)
+        let held = (0..2000u32, 0..4u8, 0..2000u16, any::<u8>())
+            .prop_map(|(age_ms, from, owed_ms, drops)| held(age_ms, from, owed_ms, drops));
+        (prop_oneof![0.0..10.0, Just(1.0)], 1..1000u64, held)
     }
 
     fn entries() -> impl Strategy<Value = Vec<Entry>> {
@@ -271,9 +330,13 @@ mod tests {
     }
 
     fn steadiness() -> impl Strategy<Value = Steadiness> {
-        (0.0..1f32, 0..2000u16, 0.0..0.5, 1..=15u8).prop_map(|(patience_s, longest_ms, content, burst)| {
-            Steadiness { patience_s, longest_ms, content, burst, ..Steadiness::default() }
-        })
+        let prices = (0.0..1f32, 1.0..10f32, 1.0..100f32);
+        (prices, 0..2000u16, 0..2000u16, 0.0..0.5, 1..=15u8).prop_map(
+            |((patience_s, turn, margin), soon_ms, longest_ms, content, burst)| {
+                let times = Steadiness { soon_ms, longest_ms, ..Steadiness::default() };
+                Steadiness { patience_s, turn, margin, content, burst, ..times }
+            },
+        )
     }
 
     /// Debts first, then credits, each candidate numbered by its place.
@@ -281,10 +344,10 @@ mod tests {
         let mut accounts = Accounts::default();
         let offer = |ticks: u64, benefit: f64| Offer { ticks: 50 + ticks, benefit };
         let all = debts.iter().map(|e| (e, true)).chain(credits.iter().map(|e| (e, false)));
-        for (i, (&(benefit, cost, account), is_debt)) in all.enumerate() {
+        for (i, (&(benefit, cost, held), is_debt)) in all.enumerate() {
             let [little, much] = [offer(0, 0.0), offer(cost, benefit + 0.01)];
             let offers = if is_debt { [little, much] } else { [much, little] };
-            accounts.open((i as u32, i as u128), Level(0), offers, account);
+            accounts.open((i as u32, i as u128), Level(0), held, offers);
         }
         accounts
     }
@@ -326,36 +389,70 @@ mod tests {
             prop_assert!(cost <= optimum.budget);
             let affordable = |d: &Debt| cost + d.cost <= optimum.budget && !steadiness.is_full(d.account);
             prop_assert!(cost >= optimum.enough || !forwards.debts.iter().any(affordable));
-            let full = |d: &Entry| steadiness.is_full(d.2);
+            let full = |d: &Entry| steadiness.is_full(d.2.account);
             prop_assert!(paid.iter().all(|&i| debts.get(i as usize).is_none_or(|d| !full(d))));
         }
     }
 
     #[test]
     fn no_more_credits_are_called_in_than_the_budget_asks_for() {
-        let credit = |benefit: f64| (benefit, 10, Account::default());
+        let credit = |benefit: f64| (benefit, 10, owed(0));
         let found = accounts(&[], &[credit(5.0), credit(1.0), credit(3.0)]);
         assert_eq!(settled(found, &Steadiness::default(), &optimum(&[], 15, 15)), (vec![1, 2], 10_010));
     }
 
+    /// Whether a debt of 100 ticks is paid beside one that cannot be.
+    fn is_paid(steadiness: &Steadiness, benefit: f64, held: Held) -> bool {
+        let full = Held { account: Account { drops: 255, ..Account::NEW }, ..owed(0) };
+        let debts = [(benefit, 100, held), (20.0, 100, full)];
+        let optimum = optimum(&debts, 0, 1000);
+        settled(accounts(&debts, &[]), steadiness, &optimum).0 == [0]
+    }
+
     #[test]
     fn much_is_paid_at_once_and_little_later() {
-        let optimum = optimum(&[(0.0, 300, Account::default())], 0, 1000);
-        let is_paid = |benefit: f64, owed_ms: u16| {
-            let debts = [
-                (benefit, 100, Account { owed_ms, drops: 0 }),
-                (2.0, 100, Account { owed_ms: 0, drops: 255 }),
-            ];
-            settled(accounts(&debts, &[]), &Steadiness::default(), &optimum).0 == [0]
-        };
+        let default = Steadiness::default();
+        let is_paid = |benefit: f64, owed_ms: u16| is_paid(&default, benefit, owed(owed_ms));
         assert!(is_paid(100.0, 0));
-        assert!(!is_paid(1.0, 0) && is_paid(1.0, 500));
-        assert!(!is_paid(0.15, 990) && is_paid(0.15, 1000));
+        assert!(!is_paid(1.0, 0) && is_paid(1.0, 150));
+        assert!(!is_paid(0.35, 249) && is_paid(0.35, 250));
+        // Worth no more than 3 · λ · cost = 0.3.
+        assert!(!is_paid(0.25, 999) && is_paid(0.25, 1000));
+    }
+
+    #[test]
+    fn who_would_turn_back_waits_longer() {
+        let default = Steadiness::default();
+        let coarsened = |age_ms: u32, owed_ms: u16| held(age_ms, 1, owed_ms, 0);
+        assert!(
+            is_paid(&default, 1.0, coarsened(1001, 150)) && !is_paid(&default, 1.0, coarsened(1000, 150))
+        );
+        assert!(is_paid(&default, 1.0, coarsened(1000, 300)));
+        assert!(
+            !is_paid(&default, 0.35, coarsened(999, 999)) && is_paid(&default, 0.35, coarsened(999, 1000))
+        );
+        // What was refined a moment ago goes on in the same direction.
+        assert!(is_paid(&default, 1.0, held(100, 3, 150, 0)));
+    }
+
+    proptest! {
+        #[test]
+        fn a_debt_that_waits_longer_or_is_worth_more_is_paid_no_later(
+            (benefit, more) in (0.0..10.0, 0.0..10.0),
+            (owed_ms, longer_ms) in (0..2000u16, 0..2000u16),
+            (age_ms, from) in (0..2000u32, 0..4u8),
+            steadiness in steadiness(),
+        ) {
+            let paid = |benefit: f64, owed_ms: u16| is_paid(&steadiness, benefit, held(age_ms, from, owed_ms, 0));
+            prop_assert!(!paid(benefit, owed_ms) || paid(benefit + more, owed_ms + longer_ms));
+            let calm = is_paid(&steadiness, benefit, held(age_ms, 3, owed_ms, 0));
+            prop_assert!(calm || !paid(benefit, owed_ms));
+        }
     }
 
     #[test]
     fn what_would_stay_unspent_pays_the_most_first() {
-        let debts = [1.0, 3.0, 2.0].map(|benefit| (benefit, 100, Account::default()));
+        let debts = [1.0, 3.0, 2.0].map(|benefit| (benefit, 100, owed(0)));
         let paid = |spare: u64| {
             let patient = Steadiness { patience_s: 3600.0, ..Steadiness::default() };
             settled(accounts(&debts, &[]), &patient, &optimum(&debts, 0, spare)).0
@@ -370,7 +467,7 @@ mod tests {
         let offers =
             [[offer(5, 1.0), offer(5, 2.0)], [offer(5, 1.0), offer(4, 1.0)], [offer(4, 2.0), offer(5, 2.0)]];
         for (i, offers) in offers.into_iter().enumerate() {
-            accounts.open((i as u32, 0), Level(i as u8), offers, Account::default());
+            accounts.open((i as u32, 0), Level(i as u8), owed(0), offers);
         }
         assert_eq!(accounts.settled, [(0, Level(0)), (1, Level(1)), (2, Level(2))]);
         assert!(accounts.debts.is_empty() && accounts.credits.is_empty());
