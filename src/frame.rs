@@ -52,12 +52,15 @@ pub struct Candidates {
     pub heaviest: f32,
     /// See [`Candidates::previous`]; [`NEWCOMER`] for an object that has just come into view.
     pub(crate) held: Vec<Level>,
-    /// Where the level that was wanted in the last frame stands among the levels of all tables
-    /// ([`TableRates::index`](crate::rate::TableRates::index)), of a candidate that may choose among all levels of its
-    /// table and counts once. [`NO_PLACE`] for any other, and for one that has just come into view.
+    /// Where the level that was wanted in the last frame, or what was [chosen](Candidates::deferred) instead, stands among
+    /// the levels of all tables ([`TableRates::index`](crate::rate::TableRates::index)), of a candidate that may choose
+    /// among all levels of its table and counts once. [`NO_PLACE`] for any other, and for one that has just come into view.
     pub place: Vec<u32>,
     /// How many candidates there are at each place.
     pub census: Vec<u32>,
+    /// Those for which the policy chose another level in the last frame than was wanted in the end, ascending
+    /// ([`Selector::deferred`](crate::select::Selector::deferred)).
+    pub deferred: Vec<Deferred>,
     /// See [`Candidate::slot`].
     pub slot: Vec<u32>,
     /// See [`Candidate::table`].
@@ -116,13 +119,33 @@ impl Account {
     }
 }
 
-/// What a frame can be asked of earlier ones about an object in view.
+/// A candidate whose place is not that of the level it holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Deferred {
+    /// Which one it is.
+    pub candidate: u32,
+    /// Its slot.
+    pub slot: u32,
+}
+
+/// A candidate for which a policy has chosen a level, and keeps what it holds all the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Deferral {
+    /// Which one it is.
+    pub candidate: u32,
+    /// The level that was chosen.
+    pub chosen: Level,
+    /// Whether that is owed to the object: it is better, and costs more.
+    pub owed: bool,
+}
+
+/// What a frame can be asked of earlier ones about an object in view that was in view before.
 pub trait Memory: fmt::Debug {
-    /// How long what was wanted of it in the last frame has been wanted; 0 where nothing was.
+    /// How long what was wanted of it in the last frame has been wanted.
     fn age_ms(&self, group: GroupId, slot: u32) -> u32;
 
     /// What the policy owes to it: nothing where no accounts are kept
-    /// ([`Selector::owed`](crate::select::Selector::owed)).
+    /// ([`Selector::deferred`](crate::select::Selector::deferred)).
     fn account(&self, group: GroupId, slot: u32) -> Account;
 }
 
@@ -155,11 +178,24 @@ pub struct Row {
     pub mask: u16,
     /// Those of them that were candidates in the last frame as well.
     pub known: u16,
+    /// Those of these that are [deferred](Candidates::deferred).
+    pub deferred: u16,
     /// Its first candidate.
     pub first: u32,
 }
 
 impl Row {
+    /// The candidates in the lanes of `deferred`.
+    fn deferred(&self) -> impl Iterator<Item = Deferred> + '_ {
+        lanes(self.deferred).map(|lane| {
+            let before = self.mask & ((1u16 << lane) - 1);
+            Deferred {
+                candidate: self.first + before.count_ones(),
+                slot: self.block * BLOCK as u32 + lane as u32,
+            }
+        })
+    }
+
     /// The slot of candidate `i`, which is one of the row's.
     pub fn slot_of(&self, i: usize) -> u32 {
         let nth = i - self.first as usize;
@@ -240,6 +276,7 @@ impl Candidates {
         self.census.resize(places, 0);
         self.clear_details();
         self.pixels = PixelSum::default();
+        self.deferred.clear();
         self.rows.clear();
         self.ends.clear();
     }
@@ -254,7 +291,7 @@ impl Candidates {
     /// Adds the candidates of blocks, given with their masks. Their weights are yet to be written.
     pub(crate) fn push_blocks(&mut self, blocks: impl Iterator<Item = (u32, u16)>) {
         for (block, mask) in blocks {
-            self.rows.push(Row { block, mask, known: 0, first: self.len as u32 });
+            self.rows.push(Row { block, mask, known: 0, deferred: 0, first: self.len as u32 });
             self.len += mask.count_ones() as usize;
         }
         self.weight.resize(self.len, 0.0);
@@ -280,7 +317,7 @@ impl Candidates {
     /// Adds the candidates of a block: those in `mask`, with the weights in their lanes. Not their details, not their
     /// memory of earlier frames.
     pub fn push_row(&mut self, block: u32, mask: u16, weight: &[f32; BLOCK]) {
-        self.rows.push(Row { block, mask, known: 0, first: self.len() as u32 });
+        self.rows.push(Row { block, mask, known: 0, deferred: 0, first: self.len() as u32 });
         for lane in lanes(mask) {
             self.push_weight(weight[lane]);
         }
@@ -417,6 +454,11 @@ impl Candidates {
     pub fn run(&self, run: usize) -> std::ops::Range<usize> {
         let start = if run == 0 { 0 } else { self.ends[run - 1].end };
         start..self.ends[run].end
+    }
+
+    /// Lists who is deferred, by what the rows say.
+    pub(crate) fn list_deferred(&mut self) {
+        self.deferred.extend(self.rows.iter().filter(|row| row.deferred != 0).flat_map(Row::deferred));
     }
 
     /// Whether the census counts what is at each place, as far as two sums can tell.

@@ -7,7 +7,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use lod_budget::frame::{Cause, OptionsError, SelectReport};
+use lod_budget::frame::{Cause, Deferral, OptionsError, SelectReport};
 use lod_budget::select::{Frame, Needs, Predictive, Selector};
 use lod_budget::{Level, ObjectId};
 
@@ -158,8 +158,8 @@ impl Selector for Watched {
         self.policy.cause(frame, i, level)
     }
 
-    fn owed(&self) -> Option<&[u32]> {
-        self.policy.owed()
+    fn deferred(&self) -> Option<&[Deferral]> {
+        self.policy.deferred()
     }
 
     fn reset(&mut self) {

@@ -24,6 +24,7 @@ pub struct LevelRate {
 pub struct TableRates {
     spans: Vec<Span>,
     levels: Vec<LevelRate>,
+    level_at: Vec<Level>,
     best_slopes: Vec<f32>,
     revision: u64,
 }
@@ -41,10 +42,12 @@ impl TableRates {
     pub fn renew(&mut self, tables: &[LodTable], model: &CostModel) {
         self.spans.clear();
         self.levels.clear();
+        self.level_at.clear();
         self.best_slopes.clear();
         for table in tables {
             let (start, radius) = (self.levels.len(), table.bounds().radius);
             self.levels.extend(table.levels().iter().map(|level| rate_of(level, radius, model)));
+            self.level_at.extend((0..=table.coarsest().0).map(Level));
             let levels = self.levels[start..].iter().enumerate().map(|(i, &rate)| (Level(i as u8), rate));
             let cheapest = cheapest(levels).unwrap_or(Level::FINEST);
             self.spans.push(Span { start: start as u32, coarsest: table.coarsest(), cheapest });
@@ -72,6 +75,11 @@ impl TableRates {
     /// The place of a drawn level among the levels of all tables, table by table.
     pub fn index(&self, table: u16, level: Level) -> usize {
         self.spans[usize::from(table)].start as usize + level.index()
+    }
+
+    /// Which level of its table is at a place.
+    pub fn level_at(&self, place: u32) -> Level {
+        self.level_at[place as usize]
     }
 
     /// Per table, the greatest accuracy per µs of geometry of any level, rounded up.

@@ -21,11 +21,19 @@ struct BlockMemory {
     seen: u16,
     /// Bit per lane: something else is shown than the level that is wanted. See [`GroupMemory::unsteady`].
     unsteady: u16,
+    /// Bit per lane: the place is not that of the level that is wanted.
+    deferred: u16,
 }
 
 impl BlockMemory {
-    const EMPTY: Self =
-        Self { place: [NO_PLACE; BLOCK], wanted: [Level::NOT_DRAWN; BLOCK], frame: 0, seen: 0, unsteady: 0 };
+    const EMPTY: Self = Self {
+        place: [NO_PLACE; BLOCK],
+        wanted: [Level::NOT_DRAWN; BLOCK],
+        frame: 0,
+        seen: 0,
+        unsteady: 0,
+        deferred: 0,
+    };
 }
 
 /// The accounts of the objects of a block.
@@ -255,6 +263,24 @@ impl GroupMemory {
         count(&mut self.census, place, 1);
         memory.wanted[lane] = wanted;
         memory.place[lane] = place;
+        memory.deferred &= !(1 << lane);
+    }
+
+    /// Notes that another level has been chosen for a slot than is wanted, the one at `place`.
+    pub fn defer(&mut self, slot: u32, place: u32) {
+        let (memory, lane) = (&mut self.blocks[slot as usize / BLOCK], slot as usize % BLOCK);
+        memory.deferred |= 1 << lane;
+        if memory.place[lane] != place {
+            count(&mut self.census, memory.place[lane], -1);
+            count(&mut self.census, place, 1);
+            memory.place[lane] = place;
+        }
+    }
+
+    /// Notes that what is wanted in a slot has been chosen too, and is at `place`.
+    pub fn conclude(&mut self, slot: u32, place: u32) {
+        self.defer(slot, place);
+        self.blocks[slot as usize / BLOCK].deferred &= !(1 << (slot as usize % BLOCK));
     }
 
     /// Goes on showing what is shown where something else is wanted of a sudden.
@@ -468,11 +494,12 @@ impl GroupMemory {
         let (memory, lane) = (&mut self.blocks[slot / BLOCK], slot % BLOCK);
         if memory.frame != self.frame {
             (memory.frame, memory.seen) = (self.frame, 0);
-            self.rows.push(Row { block: (slot / BLOCK) as u32, mask: 0, known: 0, first: 0 });
+            self.rows.push(Row { block: (slot / BLOCK) as u32, mask: 0, known: 0, deferred: 0, first: 0 });
         }
         memory.seen |= 1 << lane;
         memory.wanted[lane] = state.wanted;
         memory.place[lane] = NO_PLACE;
+        memory.deferred &= !(1 << lane);
         self.since_ms[slot / BLOCK][lane] = state.since_ms;
         if let Some(accounts) = self.accounts.get_mut(slot / BLOCK) {
             accounts.set(lane, self.frame, state.account);
@@ -522,6 +549,8 @@ impl Kernel for Recalling<'_> {
         for row in self.rows {
             let memory = &mut self.blocks[row.block as usize - self.first_block];
             row.known = if memory.frame + 1 == self.frame { memory.seen & row.mask } else { 0 };
+            row.deferred = memory.deferred & row.known;
+            memory.deferred = row.deferred;
             (memory.frame, memory.seen) = (self.frame, row.mask);
             stayed += row.known.count_ones();
             let at = row.first as usize - start;
@@ -637,7 +666,7 @@ mod tests {
         let places = Places { objects: &objects, rates: &rates, once: false };
         let mut memory = GroupMemory::new(GroupId(0));
         let recall = |memory: &mut GroupMemory, clock_ms: f64| {
-            let mut rows = [Row { block: 0, mask: 1, known: 0, first: 0 }];
+            let mut rows = [Row { block: 0, mask: 1, known: 0, deferred: 0, first: 0 }];
             let (mut held, mut place, mut levels) = ([NEWCOMER], [NO_PLACE], [Level::NOT_DRAWN]);
             let recalled = Recalled { held: &mut held, place: &mut place, levels: &mut levels };
             memory.begin_frame(places, clock_ms);

@@ -15,10 +15,10 @@ use std::ops::Range;
 
 use crate::cull::{BlockTree, CullOptions, CullReport, ValueFloor};
 use crate::feedback::{Feedback, FeedbackOptions, Prediction};
-use crate::frame::OptionsError;
 use crate::frame::{
     Candidates, Change, FrameId, FrameReport, FrameTime, GroupEnd, GroupId, Memory, NO_PLACE, NoMemory,
 };
+use crate::frame::{Deferral, Deferred, OptionsError};
 use crate::knapsack::FixedSum;
 use crate::rate::{BenefitModel, CostModel, Drivers, Seen, Stages, TableRates, rate, weigh};
 use crate::scene::{BLOCK, ObjectId, Objects};
@@ -352,6 +352,7 @@ impl Runtime {
             self.advance(objects, group, dt_ms as f32, &mut fades_us);
             first_row = end_row;
         }
+        self.scratch.candidates.list_deferred();
         debug_assert!(self.scratch.candidates.is_census_right());
         fades_us.value()
     }
@@ -364,7 +365,7 @@ impl Runtime {
         let (group, range) = (candidates.ends[run].group, candidates.run(run));
         let memory = self.groups.of(group);
         let dt_ms = memory.begin_frame(places, self.clock_ms);
-        if self.selector.owed().is_some() {
+        if self.selector.deferred().is_some() {
             memory.keep_accounts();
         }
         let recalled = Recalled {
@@ -427,7 +428,7 @@ impl Runtime {
             let group = self.scratch.candidates.ends[run].group;
             self.find_news(run);
             self.note_wanted(objects, run);
-            self.note_owed(run);
+            self.note_deferred(objects, run);
             self.grant_requests(objects, group, &mut reserve_us);
             self.groups.of(group).end_frame();
             self.scratch.all_news.extend_from_slice(&self.scratch.news);
@@ -487,15 +488,30 @@ impl Runtime {
         self.scratch.news = news;
     }
 
-    /// Remembers which candidates of a group the policy holds back, and for how long.
-    fn note_owed(&mut self, run: usize) {
-        let (candidates, owed) = (&self.scratch.candidates, self.selector.owed().unwrap_or_default());
+    /// Remembers what the policy has chosen for candidates of a group and put off, and what it owes to them; and who is
+    /// deferred no longer.
+    fn note_deferred(&mut self, objects: &Objects, run: usize) {
+        let places = Places { objects, rates: &self.rates, once: self.counts_once(run) };
+        let Scratch { candidates, levels, .. } = &self.scratch;
         let (group, range) = (candidates.ends[run].group, candidates.run(run));
         let memory = self.groups.of(group);
-        let first = owed.partition_point(|&i| (i as usize) < range.start);
-        for i in owed[first..].iter().map(|&i| i as usize).take_while(|i| range.contains(i)) {
-            memory.owe(candidates.slot_of(i), memory.account(candidates.slot_of(i)).owed_ms.max(1));
+        let conclude = |memory: &mut GroupMemory, Deferred { candidate, slot }| {
+            memory.conclude(slot, places.of(slot as usize, levels[candidate as usize]));
+        };
+        let mut before = within(&candidates.deferred, &range, |d| d.candidate).iter().copied().peekable();
+        let deferrals = self.selector.deferred().unwrap_or_default();
+        for &Deferral { candidate, chosen, owed } in within(deferrals, &range, |d| d.candidate) {
+            while let Some(over) = before.next_if(|d| d.candidate < candidate) {
+                conclude(memory, over);
+            }
+            let again = before.next_if(|d| d.candidate == candidate);
+            let slot = again.map_or_else(|| candidates.slot_of(candidate as usize), |d| d.slot);
+            memory.defer(slot, places.of(slot as usize, chosen));
+            if owed {
+                memory.owe(slot, memory.account(slot).owed_ms.max(1));
+            }
         }
+        before.for_each(|over| conclude(memory, over));
     }
 
     /// Asks for a transition of candidate `i` to what is wanted. Where a level that is `shown` is no longer in its table
@@ -565,9 +581,9 @@ impl Runtime {
 
     /// Counts and model time of everything shown, outgoing levels of transitions included.
     ///
-    /// Who has a place and is no news is shown as was wanted, and has been counted.
+    /// Who has a place, is no news and not deferred is shown as was wanted, and has been counted.
     fn tally(&mut self, objects: &Objects) -> (Drivers, f64) {
-        let Scratch { candidates, tally, all_news, .. } = &mut self.scratch;
+        let Scratch { candidates, levels, tally, all_news, .. } = &mut self.scratch;
         let frame = frame_of(objects, candidates, &self.rates, &self.feedback, &self.groups, &self.report);
         tally.begin(&frame, self.options.transition.kind);
         let shown = |i: usize| {
@@ -575,8 +591,9 @@ impl Runtime {
             memory.map_or(Shown::NOTHING, |memory| memory.shown_at(candidates.slot_of(i)))
         };
         candidates.unplaced().for_each(|i| tally.add(&frame, i, shown(i)));
-        let placed = all_news.iter().filter(|&&i| candidates.place[i] != NO_PLACE);
-        placed.for_each(|&i| tally.recount(&frame, i, shown(i)));
+        let placed = |i: &&usize| candidates.place[**i] != NO_PLACE;
+        all_news.iter().filter(placed).for_each(|&i| tally.recount(&frame, i, shown(i)));
+        tally.recount_deferred(&frame, all_news, levels);
         tally.sum(frame.model, objects.tables())
     }
 }
@@ -602,6 +619,12 @@ fn frame_of<'a>(
         memory,
         threads: 1,
     }
+}
+
+/// The part of an ascending list that is about candidates of a range.
+fn within<'a, T>(list: &'a [T], range: &Range<usize>, candidate: impl Fn(&T) -> u32) -> &'a [T] {
+    let below = |end: usize| list.partition_point(|entry| (candidate(entry) as usize) < end);
+    &list[below(range.start)..below(range.end)]
 }
 
 /// What the outgoing level of a transition costs; 0 when none is in flight.

@@ -1,10 +1,10 @@
 //! What is shown, counted per level, and what that is expected to take.
 
-use crate::frame::PixelSum;
+use crate::frame::{Candidates, NO_PLACE, PixelSum};
 use crate::knapsack::FixedSum;
 use crate::rate::{CostModel, DRIVERS, Drivers, Stages, cost_us, drivers_of};
 use crate::select::Frame;
-use crate::table::LodTable;
+use crate::table::{Level, LodTable};
 use crate::transition::{Shown, TransitionKind};
 
 /// Counts of one frame. Sums are of integers, or of numbers that add up exactly, so that the order of slots does not
@@ -38,6 +38,22 @@ impl Tally {
     pub fn recount(&mut self, frame: &Frame<'_>, i: usize, shown: Shown) {
         self.usage[frame.candidates.place[i] as usize] -= 1 << 20;
         self.add(frame, i, shown);
+    }
+
+    /// Counts who was deferred and is none of the `news`, which are ascending, at the level it holds instead of the one that
+    /// was chosen for it.
+    pub fn recount_deferred(&mut self, frame: &Frame<'_>, news: &[usize], levels: &[Level]) {
+        let Candidates { place, deferred, .. } = frame.candidates;
+        let mut news = news.iter().peekable();
+        for i in deferred.iter().map(|d| d.candidate as usize).filter(|&i| place[i] != NO_PLACE) {
+            while news.next_if(|&&n| n < i).is_some() {}
+            if news.peek() != Some(&&i) {
+                let chosen = frame.rates.level_at(place[i]);
+                let held = place[i] as usize + levels[i].index() - chosen.index();
+                self.usage[place[i] as usize] -= 1 << 20;
+                self.usage[held] += 1 << 20;
+            }
+        }
     }
 
     /// Counts what is shown of candidate `i`. Its area has been counted once.

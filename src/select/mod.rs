@@ -19,7 +19,9 @@ pub use reactive::{Reactive, ReactiveOptions};
 pub use screen_size::{Measure, ScreenSize, ScreenSizeOptions};
 pub use steadiness::Steadiness;
 
-use crate::frame::{Account, Budget, Candidate, Candidates, Cause, FrameId, Memory, SelectReport, Timing};
+use crate::frame::{
+    Account, Budget, Candidate, Candidates, Cause, Deferral, FrameId, Memory, SelectReport, Timing,
+};
 use crate::knapsack::FixedSum;
 use crate::rate::{self, CostModel, TableRates, cost_us};
 use crate::scene::Objects;
@@ -171,9 +173,10 @@ pub trait Selector: Send {
         Cause::Budget
     }
 
-    /// Candidates of the last selection, ascending, that the policy holds back from a finer level that it has chosen.
-    /// [`Frame::account`] tells it in the next frame for how long. `None` from a policy that has no use for accounts.
-    fn owed(&self) -> Option<&[u32]> {
+    /// Candidates of the last selection, ascending, for which the policy has chosen another level than it wants shown for
+    /// now. The next frame starts from what was chosen ([`Candidates::place`]), and [`Frame::account`] tells for how long
+    /// something has been owed. `None` from a policy that has no use for accounts.
+    fn deferred(&self) -> Option<&[Deferral]> {
         None
     }
 

@@ -3,7 +3,8 @@
 use super::menu::{FrameMenus, MenuColumns, OwnCandidates, Pricing, whole_ticks};
 use super::steadiness::{Accounts, Held, Optimum, Steadiness};
 use super::{Frame, Needs, Selector};
-use crate::frame::{Candidate, Candidates, Cause, Certificate, OptionsError, PixelSum, SelectReport};
+use crate::frame::{Candidate, Candidates, Cause, Certificate, Deferral, Deferred};
+use crate::frame::{NO_PLACE, OptionsError, PixelSum, SelectReport};
 use crate::knapsack::{Crowd, Menus, OddClass, Outcome, ProfileItem, SharedClass, SharedKnapsack};
 use crate::rate::{Stages, TableRates};
 use crate::scene::{BLOCK, LevelRange};
@@ -79,8 +80,8 @@ pub struct Predictive {
     odd: Vec<OddClass>,
     own: OwnCandidates,
     accounts: Accounts,
-    /// Candidates that are held coarser than the optimum, ascending.
-    owed: Vec<u32>,
+    /// Candidates that are not held at the optimum, ascending.
+    deferred: Vec<Deferral>,
     /// λ of the last frame in px² per µs.
     lambda: f64,
     /// See [`FALL`].
@@ -174,11 +175,11 @@ impl Predictive {
         let Outcome { lambda, cost, benefit, minimum_benefit, .. } = outcome;
         let (gain, objects) = (benefit - minimum_benefit, levels.len());
         let optimum = Optimum { gain, objects, lambda, cost, budget, enough: ease };
-        let cost = self.accounts.settle(steadiness, &optimum);
+        let cost = self.accounts.settle(steadiness, &optimum, |candidate| frame.key(candidate as usize));
         self.accounts.settled.iter().for_each(|&(i, level)| levels[i as usize] = level);
-        self.owed.clear();
-        self.owed.extend(self.accounts.debts.iter().map(|debt| debt.candidate));
-        self.owed.sort_unstable();
+        self.deferred.clear();
+        self.deferred.extend(self.accounts.deferrals());
+        self.deferred.sort_unstable_by_key(|deferral| deferral.candidate);
         Outcome { cost, benefit: self.accounts.benefit(benefit), ..outcome }
     }
 
@@ -239,10 +240,11 @@ impl Selector for Predictive {
     fn cause(&self, frame: &Frame<'_>, i: usize, level: Level) -> Cause {
         if let Some(steadiness) = self.options.steadiness {
             let is_full = steadiness.is_full(frame.account(i));
-            return match self.owed.binary_search(&(i as u32)) {
-                Ok(_) if is_full => Cause::Dwell,
-                Ok(_) => Cause::Hysteresis,
-                Err(_) => Cause::Budget,
+            let found = self.deferred.binary_search_by_key(&i, |deferral| deferral.candidate as usize);
+            return match found.is_ok_and(|at| self.deferred[at].owed) {
+                true if is_full => Cause::Dwell,
+                true => Cause::Hysteresis,
+                false => Cause::Budget,
             };
         }
         let (candidates, candidate) = (frame.candidates, frame.candidate(i));
@@ -260,14 +262,14 @@ impl Selector for Predictive {
         }
     }
 
-    fn owed(&self) -> Option<&[u32]> {
-        self.options.steadiness.map(|_| self.owed.as_slice())
+    fn deferred(&self) -> Option<&[Deferral]> {
+        self.options.steadiness.map(|_| self.deferred.as_slice())
     }
 
     fn reset(&mut self) {
         self.knapsack.forget();
         (self.lambda, self.fall) = (0.0, 0.0);
-        self.owed.clear();
+        self.deferred.clear();
     }
 
     fn boxed_clone(&self) -> Box<dyn Selector> {
@@ -275,8 +277,9 @@ impl Selector for Predictive {
     }
 }
 
-/// Opens the account of every candidate that does not hold the level the knapsack has for it. Who has just come into view,
-/// and whose level is allowed no longer, takes it at once.
+/// Opens the account of every candidate that does not hold the level the knapsack has for it: of those that were looked at
+/// closely, and of those that were deferred and are where they were. Who has just come into view, and whose level is
+/// allowed no longer, takes it at once.
 fn open_accounts<F: Fn(usize) -> f32, M: Menus>(
     accounts: &mut Accounts,
     knapsack: &SharedKnapsack,
@@ -285,17 +288,25 @@ fn open_accounts<F: Fn(usize) -> f32, M: Menus>(
     levels: &mut [Level],
 ) {
     accounts.clear();
-    for (i, item) in knapsack.changed() {
-        let best = Level(item);
-        let held = frame.candidates.previous(i).filter(|&level| level != best);
+    let candidates = frame.candidates;
+    let mut open = |i: usize, slot: u32, best: Level| {
+        let held = candidates.previous(i).filter(|&level| level != best);
         let offer = |level: Level| crowd.offer(&knapsack.profiles, i, level.0);
-        let offers = held.and_then(|level| {
-            let held = Held { level, age_ms: frame.age_ms(i), account: frame.account(i) };
-            Some((held, [offer(level)?, offer(best)?]))
-        });
+        let offers = held.and_then(|level| Some((level, [offer(level)?, offer(best)?])));
         match offers {
-            Some((held, offers)) => accounts.open((i as u32, frame.key(i)), best, held, offers),
+            Some((level, offers)) => {
+                let group = candidates.group_of(i);
+                let (age_ms, account) = (frame.memory.age_ms(group, slot), frame.memory.account(group, slot));
+                accounts.open(i as u32, best, Held { level, age_ms, account }, offers);
+            }
             None => levels[i] = best,
+        }
+    };
+    knapsack.changed().for_each(|(i, item)| open(i, candidates.slot_of(i), Level(item)));
+    for &Deferred { candidate, slot } in &candidates.deferred {
+        let (i, place) = (candidate as usize, candidates.place[candidate as usize]);
+        if place != NO_PLACE && !knapsack.has_looked_at(i) {
+            open(i, slot, frame.rates.level_at(place));
         }
     }
 }

@@ -24,7 +24,9 @@
 //!
 //! The same debts are paid in whatever order they are found. The optimum's upper bound certifies what is shown.
 
-use crate::frame::{Account, OptionsError};
+use std::cmp::Ordering;
+
+use crate::frame::{Account, Deferral, OptionsError};
 use crate::knapsack::{FixedSum, Offer};
 use crate::table::Level;
 
@@ -170,8 +172,8 @@ pub(super) struct Debt {
     pub account: Account,
     /// Whether it was coarsened a moment ago.
     pub turns: bool,
-    /// Breaks ties.
-    pub key: u128,
+    /// Whether it is paid before it is due.
+    is_paid: bool,
 }
 
 /// What an object that is held finer than the optimum has beyond it.
@@ -185,8 +187,6 @@ pub(super) struct Credit {
     pub benefit: f64,
     /// Ticks by which it is dearer, > 0.
     pub cost: u64,
-    /// Breaks ties.
-    pub key: u128,
 }
 
 /// The accounts of a frame. [`Accounts::open`] them, then [`Accounts::settle`].
@@ -218,24 +218,25 @@ impl Accounts {
 
     /// Opens the account of a candidate whose optimum is another level than it holds. Where the optimum's is better at
     /// no more cost, or cheaper at no less benefit, it is settled without more ado.
-    pub fn open(&mut self, (candidate, key): (u32, u128), best: Level, held: Held, [old, new]: [Offer; 2]) {
+    pub fn open(&mut self, candidate: u32, best: Level, held: Held, [old, new]: [Offer; 2]) {
         let benefit = new.benefit - old.benefit;
         if new.ticks > old.ticks && benefit > 0.0 {
             let (cost, account, turns) = (new.ticks - old.ticks, held.account, held.was_finer());
-            self.debts.push(Debt { candidate, best, benefit, cost, account, turns, key });
+            self.debts.push(Debt { candidate, best, benefit, cost, account, turns, is_paid: false });
         } else if new.ticks < old.ticks && benefit < 0.0 {
             let cost = old.ticks - new.ticks;
-            self.credits.push(Credit { candidate, best, benefit: -benefit, cost, key });
+            self.credits.push(Credit { candidate, best, benefit: -benefit, cost });
         } else {
             self.settled.push((candidate, best));
         }
     }
 
     /// Pays the debts that are due, then calls in credits, the least benefit per cost first, until the budget is kept,
-    /// and spends what is left beyond the dead band on other debts, the most benefit first. Returns the cost.
+    /// and spends what is left beyond the dead band on other debts, the most benefit first; the lower `key` of a candidate
+    /// goes first. Returns the cost.
     ///
-    /// O(accounts), and a sort of the credits where some are called in, of the debts where some are paid early.
-    pub fn settle(&mut self, steadiness: &Steadiness, optimum: &Optimum) -> u64 {
+    /// O(accounts), and a sort of about so many credits as are called in, or of debts as are paid early.
+    pub fn settle(&mut self, steadiness: &Steadiness, optimum: &Optimum, key: impl Fn(u32) -> u128) -> u64 {
         let mut cost = self.held_cost(optimum);
         if !steadiness.is_content(&self.debts, optimum) {
             self.pay(|debt| {
@@ -245,18 +246,43 @@ impl Accounts {
             });
         }
         if cost > optimum.budget {
-            cost = cost.saturating_sub(self.call_in(cost - optimum.budget));
+            cost = cost.saturating_sub(self.call_in(cost - optimum.budget, &key));
         }
         if cost < optimum.enough {
-            self.debts.sort_unstable_by(|a, b| b.benefit.total_cmp(&a.benefit).then(a.key.cmp(&b.key)));
-            self.pay(|debt| {
-                let fits = cost < optimum.enough && debt.cost <= optimum.budget - cost;
-                let pays = fits && !steadiness.is_full(debt.account);
-                cost += if pays { debt.cost } else { 0 };
-                pays
-            });
+            cost = self.pay_early(steadiness, optimum, cost, &key);
         }
         cost
+    }
+
+    /// Pays debts, the most benefit first, until enough is spent. Returns the cost.
+    fn pay_early(
+        &mut self,
+        steadiness: &Steadiness,
+        optimum: &Optimum,
+        mut cost: u64,
+        key: &impl Fn(u32) -> u128,
+    ) -> u64 {
+        let order = |a: &Debt, b: &Debt| {
+            b.benefit.total_cmp(&a.benefit).then_with(|| key(a.candidate).cmp(&key(b.candidate)))
+        };
+        let looked_at = in_order(&mut self.debts, order, |debt| {
+            let fits = cost < optimum.enough && debt.cost <= optimum.budget - cost;
+            debt.is_paid = fits && !steadiness.is_full(debt.account);
+            cost += if debt.is_paid { debt.cost } else { 0 };
+            cost < optimum.enough
+        });
+        let paid = self.debts[..looked_at].iter().filter(|debt| debt.is_paid);
+        self.settled.extend(paid.map(|debt| (debt.candidate, debt.best)));
+        self.debts.retain(|debt| !debt.is_paid);
+        cost
+    }
+
+    /// Who does not hold the optimum's level after all, in no order.
+    pub fn deferrals(&self) -> impl Iterator<Item = Deferral> + '_ {
+        let debts =
+            self.debts.iter().map(|d| Deferral { candidate: d.candidate, chosen: d.best, owed: true });
+        let credits = self.credits.iter();
+        debts.chain(credits.map(|c| Deferral { candidate: c.candidate, chosen: c.best, owed: false }))
     }
 
     /// What the open accounts make of the optimum's benefit.
@@ -286,18 +312,43 @@ impl Accounts {
     }
 
     /// Calls in credits of `over` ticks or more, or all. Returns how many ticks they come to.
-    fn call_in(&mut self, over: u64) -> u64 {
+    fn call_in(&mut self, over: u64, key: &impl Fn(u32) -> u128) -> u64 {
         let slope = |credit: &Credit| credit.benefit / credit.cost as f64;
-        self.credits.sort_unstable_by(|a, b| slope(b).total_cmp(&slope(a)).then(b.key.cmp(&a.key)));
+        let order = |a: &Credit, b: &Credit| {
+            slope(a).total_cmp(&slope(b)).then_with(|| key(a.candidate).cmp(&key(b.candidate)))
+        };
         let mut freed = 0u64;
-        while freed < over
-            && let Some(credit) = self.credits.pop()
-        {
+        let called = in_order(&mut self.credits, order, |credit| {
             freed = freed.saturating_add(credit.cost);
-            self.settled.push((credit.candidate, credit.best));
-        }
+            freed < over
+        });
+        self.settled.extend(self.credits.drain(..called).map(|credit| (credit.candidate, credit.best)));
         freed
     }
+}
+
+/// Puts a list into order from its start until `goes_on` says no. Returns how many entries it was asked about.
+///
+/// O(n) where it says no soon, else a sort.
+fn in_order<T>(
+    list: &mut [T],
+    order: impl Fn(&T, &T) -> Ordering,
+    mut goes_on: impl FnMut(&mut T) -> bool,
+) -> usize {
+    let (mut start, mut size) = (0, 64);
+    while start < list.len() {
+        let rest = &mut list[start..];
+        let end = size.min(rest.len());
+        if end < rest.len() {
+            rest.select_nth_unstable_by(end - 1, &order);
+        }
+        rest[..end].sort_unstable_by(&order);
+        if let Some(at) = rest[..end].iter_mut().position(|entry| !goes_on(entry)) {
+            return start + at + 1;
+        }
+        (start, size) = (start + end, size * 4);
+    }
+    list.len()
 }
 
 #[cfg(test)]
@@ -347,14 +398,14 @@ mod tests {
         for (i, (&(benefit, cost, held), is_debt)) in all.enumerate() {
             let [little, much] = [offer(0, 0.0), offer(cost, benefit + 0.01)];
             let offers = if is_debt { [little, much] } else { [much, little] };
-            accounts.open((i as u32, i as u128), Level(0), held, offers);
+            accounts.open(i as u32, Level(0), held, offers);
         }
         accounts
     }
 
     /// Candidates that settle, and what is spent.
     fn settled(mut accounts: Accounts, steadiness: &Steadiness, optimum: &Optimum) -> (Vec<u32>, u64) {
-        let cost = accounts.settle(steadiness, optimum);
+        let cost = accounts.settle(steadiness, optimum, u128::from);
         let mut settled: Vec<u32> = accounts.settled.iter().map(|&(i, _)| i).collect();
         settled.sort_unstable();
         (settled, cost)
@@ -382,7 +433,7 @@ mod tests {
             backwards.credits.reverse();
             let (paid, cost) = settled(forwards.clone(), &steadiness, &optimum);
             prop_assert_eq!((&paid, cost), (&settled(backwards, &steadiness, &optimum).0, cost));
-            forwards.settle(&steadiness, &optimum);
+            forwards.settle(&steadiness, &optimum, u128::from);
             let still_owed: u64 = forwards.debts.iter().map(|d| d.cost).sum();
             let kept: u64 = forwards.credits.iter().map(|c| c.cost).sum();
             prop_assert_eq!(cost, optimum.cost + kept - still_owed);
@@ -467,7 +518,7 @@ mod tests {
         let offers =
             [[offer(5, 1.0), offer(5, 2.0)], [offer(5, 1.0), offer(4, 1.0)], [offer(4, 2.0), offer(5, 2.0)]];
         for (i, offers) in offers.into_iter().enumerate() {
-            accounts.open((i as u32, 0), Level(i as u8), owed(0), offers);
+            accounts.open(i as u32, Level(i as u8), owed(0), offers);
         }
         assert_eq!(accounts.settled, [(0, Level(0)), (1, Level(1)), (2, Level(2))]);
         assert!(accounts.debts.is_empty() && accounts.credits.is_empty());

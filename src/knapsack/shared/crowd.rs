@@ -407,6 +407,12 @@ impl SharedKnapsack {
         moved.chain(turned).chain(listed)
     }
 
+    /// Whether a class of the crowd was looked at closely, so that it is among [`SharedKnapsack::changed`]. One that has
+    /// items of its own may hold what it held though it was.
+    pub fn has_looked_at(&self, i: usize) -> bool {
+        self.aside.is_marked(i)
+    }
+
     /// The answer, with few classes listed; `None` where that is not enough to be sure of it.
     fn solve_aside<F: Fn(usize) -> f32, M: Menus>(
         &mut self,
@@ -440,6 +446,8 @@ impl SharedKnapsack {
     /// Lists every class.
     fn list_all<F: Fn(usize) -> f32, M: Menus>(&mut self, crowd: &Crowd<'_, F, M>) {
         self.aside.clear();
+        self.aside.marked.clear();
+        self.aside.marked.resize(crowd.weight.len().div_ceil(64), u64::MAX);
         self.list_every(crowd, 1);
         self.owners.clear();
         self.owners.extend(0..crowd.weight.len() as u32);

@@ -171,9 +171,10 @@ impl Profiles {
         &self.items[start as usize..end as usize]
     }
 
-    /// What a class costs and is worth with `item`; `None` when its profile was not made of it. O(items).
+    /// What a class costs and is worth with `item`; `None` when its profile was not made of it. O(1) where items were given
+    /// in the order of their codes without gaps.
     pub fn offer(&self, class: &SharedClass, item: u8) -> Option<Offer> {
-        let found = self.items(class.profile).iter().find(|i| i.item == item)?;
+        let found = self.items(class.profile)[self.item_at(class.profile, item)?];
         let benefit = f64::from(class.weight) * f64::from(found.value);
         Some(Offer { ticks: scaled(found.ticks, class.scale), benefit })
     }
@@ -181,11 +182,16 @@ impl Profiles {
     /// The position that holds `item`, or else the costliest one that costs no more than it; the cheapest for an item
     /// that the profile was not made of. O(1) where items were given in the order of their codes without gaps.
     pub fn position_of(&self, profile: u32, item: u8) -> u8 {
+        self.item_at(profile, item)
+            .map_or(0, |at| self.held[self.spans[profile as usize].items.0 as usize + at])
+    }
+
+    /// Where an item is among those of a profile.
+    fn item_at(&self, profile: u32, item: u8) -> Option<usize> {
         let items = self.items(profile);
         let is_it = |i: &ProfileItem| i.item == item;
         let guess = usize::from(item.wrapping_sub(items.first().map_or(0, |i| i.item)));
-        let at = if items.get(guess).is_some_and(is_it) { Some(guess) } else { items.iter().position(is_it) };
-        at.map_or(0, |at| self.held[self.spans[profile as usize].items.0 as usize + at])
+        if items.get(guess).is_some_and(is_it) { Some(guess) } else { items.iter().position(is_it) }
     }
 }
 
