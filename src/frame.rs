@@ -133,6 +133,8 @@ pub struct Deferred {
 pub struct Deferral {
     /// Which one it is.
     pub candidate: u32,
+    /// Its slot.
+    pub slot: u32,
     /// The level that was chosen.
     pub chosen: Level,
     /// Whether that is owed to the object: it is better, and costs more.
@@ -141,12 +143,18 @@ pub struct Deferral {
 
 /// What a frame can be asked of earlier ones about an object in view that was in view before.
 pub trait Memory: fmt::Debug {
-    /// How long what was wanted of it in the last frame has been wanted.
-    fn age_ms(&self, group: GroupId, slot: u32) -> u32;
+    /// What is remembered of it.
+    fn recall(&self, group: GroupId, slot: u32) -> Remembered;
+}
 
+/// What is remembered of an object in view besides the level that was wanted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Remembered {
+    /// How long that has been wanted.
+    pub age_ms: u32,
     /// What the policy owes to it: nothing where no accounts are kept
     /// ([`Selector::deferred`](crate::select::Selector::deferred)).
-    fn account(&self, group: GroupId, slot: u32) -> Account;
+    pub account: Account,
 }
 
 /// No frame came before.
@@ -154,12 +162,8 @@ pub trait Memory: fmt::Debug {
 pub struct NoMemory;
 
 impl Memory for NoMemory {
-    fn age_ms(&self, _: GroupId, _: u32) -> u32 {
-        0
-    }
-
-    fn account(&self, _: GroupId, _: u32) -> Account {
-        Account::default()
+    fn recall(&self, _: GroupId, _: u32) -> Remembered {
+        Remembered::default()
     }
 }
 
@@ -458,7 +462,9 @@ impl Candidates {
 
     /// Lists who is deferred, by what the rows say.
     pub(crate) fn list_deferred(&mut self) {
-        self.deferred.extend(self.rows.iter().filter(|row| row.deferred != 0).flat_map(Row::deferred));
+        for row in self.rows.iter().filter(|row| row.deferred != 0) {
+            row.deferred().for_each(|deferred| self.deferred.push(deferred));
+        }
     }
 
     /// Whether the census counts what is at each place, as far as two sums can tell.

@@ -1,6 +1,6 @@
 //! What is remembered of earlier frames, per view group and slot: sixteen slots to a block, as the objects are.
 
-use crate::frame::{Account, Cause, Change, GroupId, Memory, NEWCOMER, NO_PLACE, Row};
+use crate::frame::{Account, Cause, Change, GroupId, Memory, NEWCOMER, NO_PLACE, Remembered, Row};
 use crate::kernel::{Divisible, Kernel, run_on};
 use crate::rate::TableRates;
 use crate::scene::{BLOCK, ObjectId, Objects, lanes};
@@ -21,7 +21,7 @@ struct BlockMemory {
     seen: u16,
     /// Bit per lane: something else is shown than the level that is wanted. See [`GroupMemory::unsteady`].
     unsteady: u16,
-    /// Bit per lane: the place is not that of the level that is wanted.
+    /// Bit per lane: the place is not that of the level that is wanted. Not set while a frame is under way.
     deferred: u16,
 }
 
@@ -135,12 +135,10 @@ impl Groups {
 }
 
 impl Memory for Groups {
-    fn age_ms(&self, group: GroupId, slot: u32) -> u32 {
-        self.get(group).map_or(0, |memory| memory.age_ms(slot))
-    }
-
-    fn account(&self, group: GroupId, slot: u32) -> Account {
-        self.get(group).map_or(Account::default(), |memory| memory.account(slot))
+    fn recall(&self, group: GroupId, slot: u32) -> Remembered {
+        let of =
+            |memory: &GroupMemory| Remembered { age_ms: memory.age_ms(slot), account: memory.account(slot) };
+        self.get(group).map_or(Remembered::default(), of)
     }
 }
 
@@ -277,7 +275,12 @@ impl GroupMemory {
         }
     }
 
-    /// Notes that what is wanted in a slot has been chosen too, and is at `place`.
+    /// Whether another level has been chosen for a slot than is wanted.
+    pub fn is_deferred(&self, slot: u32) -> bool {
+        self.blocks[slot as usize / BLOCK].deferred & (1 << (slot as usize % BLOCK)) != 0
+    }
+
+    /// Notes that what is wanted in a slot is what has been chosen, and is at `place`.
     pub fn conclude(&mut self, slot: u32, place: u32) {
         self.defer(slot, place);
         self.blocks[slot as usize / BLOCK].deferred &= !(1 << (slot as usize % BLOCK));
@@ -364,8 +367,9 @@ impl GroupMemory {
         self.set(slot, wanted, place);
     }
 
-    /// Notes that a finer level of a slot has been held back for so long.
-    pub fn owe(&mut self, slot: u32, owed_ms: u16) {
+    /// Notes that a finer level of a slot is held back.
+    pub fn owe(&mut self, slot: u32) {
+        let owed_ms = self.account(slot).owed_ms.max(1);
         if let Some(accounts) = self.accounts.get_mut(slot as usize / BLOCK) {
             let lane = slot as usize % BLOCK;
             accounts.set(lane, self.frame, Account { owed_ms, ..accounts.account[lane] });
@@ -550,7 +554,7 @@ impl Kernel for Recalling<'_> {
             let memory = &mut self.blocks[row.block as usize - self.first_block];
             row.known = if memory.frame + 1 == self.frame { memory.seen & row.mask } else { 0 };
             row.deferred = memory.deferred & row.known;
-            memory.deferred = row.deferred;
+            memory.deferred = 0;
             (memory.frame, memory.seen) = (self.frame, row.mask);
             stayed += row.known.count_ones();
             let at = row.first as usize - start;

@@ -18,7 +18,7 @@ use crate::feedback::{Feedback, FeedbackOptions, Prediction};
 use crate::frame::{
     Candidates, Change, FrameId, FrameReport, FrameTime, GroupEnd, GroupId, Memory, NO_PLACE, NoMemory,
 };
-use crate::frame::{Deferral, Deferred, OptionsError};
+use crate::frame::{Deferred, OptionsError};
 use crate::knapsack::FixedSum;
 use crate::rate::{BenefitModel, CostModel, Drivers, Seen, Stages, TableRates, rate, weigh};
 use crate::scene::{BLOCK, ObjectId, Objects};
@@ -495,23 +495,19 @@ impl Runtime {
         let Scratch { candidates, levels, .. } = &self.scratch;
         let (group, range) = (candidates.ends[run].group, candidates.run(run));
         let memory = self.groups.of(group);
-        let conclude = |memory: &mut GroupMemory, Deferred { candidate, slot }| {
-            memory.conclude(slot, places.of(slot as usize, levels[candidate as usize]));
-        };
-        let mut before = within(&candidates.deferred, &range, |d| d.candidate).iter().copied().peekable();
-        let deferrals = self.selector.deferred().unwrap_or_default();
-        for &Deferral { candidate, chosen, owed } in within(deferrals, &range, |d| d.candidate) {
-            while let Some(over) = before.next_if(|d| d.candidate < candidate) {
-                conclude(memory, over);
-            }
-            let again = before.next_if(|d| d.candidate == candidate);
-            let slot = again.map_or_else(|| candidates.slot_of(candidate as usize), |d| d.slot);
-            memory.defer(slot, places.of(slot as usize, chosen));
-            if owed {
-                memory.owe(slot, memory.account(slot).owed_ms.max(1));
+        let deferrals = self.selector.deferred().unwrap_or_default().iter();
+        for deferral in deferrals.filter(|d| range.contains(&(d.candidate as usize))) {
+            memory.defer(deferral.slot, places.of(deferral.slot as usize, deferral.chosen));
+            if deferral.owed {
+                memory.owe(deferral.slot);
             }
         }
-        before.for_each(|over| conclude(memory, over));
+        let before = candidates.deferred.iter().filter(|d| range.contains(&(d.candidate as usize)));
+        for &Deferred { candidate, slot } in before {
+            if !memory.is_deferred(slot) {
+                memory.conclude(slot, places.of(slot as usize, levels[candidate as usize]));
+            }
+        }
     }
 
     /// Asks for a transition of candidate `i` to what is wanted. Where a level that is `shown` is no longer in its table
@@ -619,12 +615,6 @@ fn frame_of<'a>(
         memory,
         threads: 1,
     }
-}
-
-/// The part of an ascending list that is about candidates of a range.
-fn within<'a, T>(list: &'a [T], range: &Range<usize>, candidate: impl Fn(&T) -> u32) -> &'a [T] {
-    let below = |end: usize| list.partition_point(|entry| (candidate(entry) as usize) < end);
-    &list[below(range.start)..below(range.end)]
 }
 
 /// What the outgoing level of a transition costs; 0 when none is in flight.

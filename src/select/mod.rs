@@ -20,7 +20,8 @@ pub use screen_size::{Measure, ScreenSize, ScreenSizeOptions};
 pub use steadiness::Steadiness;
 
 use crate::frame::{
-    Account, Budget, Candidate, Candidates, Cause, Deferral, FrameId, Memory, SelectReport, Timing,
+    Account, Budget, Candidate, Candidates, Cause, Deferral, FrameId, Memory, Remembered, SelectReport,
+    Timing,
 };
 use crate::knapsack::FixedSum;
 use crate::rate::{self, CostModel, TableRates, cost_us};
@@ -98,15 +99,17 @@ impl Frame<'_> {
 
     /// How long what was wanted of candidate `i` in the last frame has been wanted; 0 where nothing was.
     pub fn age_ms(&self, i: usize) -> u32 {
-        let known = self.candidates.previous(i).is_some();
-        if known { self.memory.age_ms(self.candidates.group_of(i), self.candidates.slot_of(i)) } else { 0 }
+        self.remembered(i).age_ms
     }
 
     /// What the policy owes to candidate `i`: nothing where no accounts are kept.
     pub fn account(&self, i: usize) -> Account {
-        let known = self.candidates.previous(i).is_some();
-        let account = || self.memory.account(self.candidates.group_of(i), self.candidates.slot_of(i));
-        if known { account() } else { Account::default() }
+        self.remembered(i).account
+    }
+
+    fn remembered(&self, i: usize) -> Remembered {
+        let recall = || self.memory.recall(self.candidates.group_of(i), self.candidates.slot_of(i));
+        if self.candidates.previous(i).is_some() { recall() } else { Remembered::default() }
     }
 
     /// What breaks ties between candidates: the object's id, then the group. The lower goes first.
@@ -173,7 +176,7 @@ pub trait Selector: Send {
         Cause::Budget
     }
 
-    /// Candidates of the last selection, ascending, for which the policy has chosen another level than it wants shown for
+    /// Candidates of the last selection, in any order, for which the policy has chosen another level than it wants shown for
     /// now. The next frame starts from what was chosen ([`Candidates::place`]), and [`Frame::account`] tells for how long
     /// something has been owed. `None` from a policy that has no use for accounts.
     fn deferred(&self) -> Option<&[Deferral]> {

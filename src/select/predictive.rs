@@ -80,8 +80,9 @@ pub struct Predictive {
     odd: Vec<OddClass>,
     own: OwnCandidates,
     accounts: Accounts,
-    /// Candidates that are not held at the optimum, ascending.
+    /// Candidates that are not held at the optimum, and a bit for each that is owed it.
     deferred: Vec<Deferral>,
+    owed: Vec<u64>,
     /// λ of the last frame in px² per µs.
     lambda: f64,
     /// See [`FALL`].
@@ -179,7 +180,11 @@ impl Predictive {
         self.accounts.settled.iter().for_each(|&(i, level)| levels[i as usize] = level);
         self.deferred.clear();
         self.deferred.extend(self.accounts.deferrals());
-        self.deferred.sort_unstable_by_key(|deferral| deferral.candidate);
+        self.owed.clear();
+        self.owed.resize(levels.len().div_ceil(64), 0);
+        for debt in &self.accounts.debts {
+            self.owed[debt.candidate as usize / 64] |= 1 << (debt.candidate % 64);
+        }
         Outcome { cost, benefit: self.accounts.benefit(benefit), ..outcome }
     }
 
@@ -240,8 +245,7 @@ impl Selector for Predictive {
     fn cause(&self, frame: &Frame<'_>, i: usize, level: Level) -> Cause {
         if let Some(steadiness) = self.options.steadiness {
             let is_full = steadiness.is_full(frame.account(i));
-            let found = self.deferred.binary_search_by_key(&i, |deferral| deferral.candidate as usize);
-            return match found.is_ok_and(|at| self.deferred[at].owed) {
+            return match self.owed.get(i / 64).is_some_and(|bits| bits & (1 << (i % 64)) != 0) {
                 true if is_full => Cause::Dwell,
                 true => Cause::Hysteresis,
                 false => Cause::Budget,
@@ -289,24 +293,27 @@ fn open_accounts<F: Fn(usize) -> f32, M: Menus>(
 ) {
     accounts.clear();
     let candidates = frame.candidates;
-    let mut open = |i: usize, slot: u32, best: Level| {
-        let held = candidates.previous(i).filter(|&level| level != best);
+    let recall = |i: usize, slot: u32| frame.memory.recall(candidates.group_of(i), slot);
+    for (i, item) in knapsack.changed() {
+        let best = Level(item);
         let offer = |level: Level| crowd.offer(&knapsack.profiles, i, level.0);
-        let offers = held.and_then(|level| Some((level, [offer(level)?, offer(best)?])));
-        match offers {
+        let held = candidates.previous(i).filter(|&level| level != best);
+        match held.and_then(|level| Some((level, [offer(level)?, offer(best)?]))) {
             Some((level, offers)) => {
-                let group = candidates.group_of(i);
-                let (age_ms, account) = (frame.memory.age_ms(group, slot), frame.memory.account(group, slot));
-                accounts.open(i as u32, best, Held { level, age_ms, account }, offers);
+                let held = Held { candidate: i as u32, slot: candidates.slot_of(i), level };
+                accounts.open(held, best, offers, || recall(i, held.slot));
             }
             None => levels[i] = best,
         }
-    };
-    knapsack.changed().for_each(|(i, item)| open(i, candidates.slot_of(i), Level(item)));
+    }
     for &Deferred { candidate, slot } in &candidates.deferred {
         let (i, place) = (candidate as usize, candidates.place[candidate as usize]);
         if place != NO_PLACE && !knapsack.has_looked_at(i) {
-            open(i, slot, frame.rates.level_at(place));
+            let (level, best) = (levels[i], frame.rates.level_at(place));
+            let weight = candidates.weight[i];
+            let offer = |place: u32| knapsack.profiles.offer_at(place, weight);
+            let offers = [offer(place + u32::from(level.0) - u32::from(best.0)), offer(place)];
+            accounts.open(Held { candidate, slot, level }, best, offers, || recall(i, slot));
         }
     }
 }

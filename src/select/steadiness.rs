@@ -26,7 +26,7 @@
 
 use std::cmp::Ordering;
 
-use crate::frame::{Account, Deferral, OptionsError};
+use crate::frame::{Account, Deferral, OptionsError, Remembered};
 use crate::knapsack::{FixedSum, Offer};
 use crate::table::Level;
 
@@ -122,22 +122,19 @@ impl Steadiness {
 /// A change back within this time is a reversal.
 const TURN_MS: u32 = 1000;
 
-/// What an object holds whose optimum is another level.
+/// An object whose optimum is another level than it holds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Held {
-    /// The level.
+    /// Which candidate, and its slot.
+    pub candidate: u32,
+    pub slot: u32,
+    /// The level that it holds.
     pub level: Level,
-    /// For how long.
-    pub age_ms: u32,
-    /// What is remembered of it.
-    pub account: Account,
 }
 
-impl Held {
-    /// Whether it was coarsened so short a time ago that to refine it is to turn back.
-    fn was_finer(&self) -> bool {
-        self.age_ms <= TURN_MS && self.account.from < self.level
-    }
+/// Whether an object that holds `level` was coarsened so short a time ago that to refine it is to turn back.
+fn was_finer(level: Level, remembered: &Remembered) -> bool {
+    remembered.age_ms <= TURN_MS && remembered.account.from < level
 }
 
 /// What the optimum of a frame comes to. Costs in ticks, benefits in px².
@@ -160,8 +157,9 @@ pub(super) struct Optimum {
 /// What an object that is held coarser than the optimum is owed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Debt {
-    /// Which candidate.
+    /// Which candidate, and its slot.
     pub candidate: u32,
+    pub slot: u32,
     /// The level that the optimum has for it.
     pub best: Level,
     /// Benefit by which that is better than what is held, > 0.
@@ -179,8 +177,9 @@ pub(super) struct Debt {
 /// What an object that is held finer than the optimum has beyond it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Credit {
-    /// Which candidate.
+    /// Which candidate, and its slot.
     pub candidate: u32,
+    pub slot: u32,
     /// The level that the optimum has for it.
     pub best: Level,
     /// Benefit by which what is held is better, > 0.
@@ -218,14 +217,21 @@ impl Accounts {
 
     /// Opens the account of a candidate whose optimum is another level than it holds. Where the optimum's is better at
     /// no more cost, or cheaper at no less benefit, it is settled without more ado.
-    pub fn open(&mut self, candidate: u32, best: Level, held: Held, [old, new]: [Offer; 2]) {
-        let benefit = new.benefit - old.benefit;
+    pub fn open(
+        &mut self,
+        held: Held,
+        best: Level,
+        [old, new]: [Offer; 2],
+        remembered: impl FnOnce() -> Remembered,
+    ) {
+        let (benefit, Held { candidate, slot, level }) = (new.benefit - old.benefit, held);
         if new.ticks > old.ticks && benefit > 0.0 {
-            let (cost, account, turns) = (new.ticks - old.ticks, held.account, held.was_finer());
-            self.debts.push(Debt { candidate, best, benefit, cost, account, turns, is_paid: false });
+            let (cost, remembered) = (new.ticks - old.ticks, remembered());
+            let (turns, account) = (was_finer(level, &remembered), remembered.account);
+            self.debts.push(Debt { candidate, slot, best, benefit, cost, account, turns, is_paid: false });
         } else if new.ticks < old.ticks && benefit < 0.0 {
             let cost = old.ticks - new.ticks;
-            self.credits.push(Credit { candidate, best, benefit: -benefit, cost });
+            self.credits.push(Credit { candidate, slot, best, benefit: -benefit, cost });
         } else {
             self.settled.push((candidate, best));
         }
@@ -279,10 +285,9 @@ impl Accounts {
 
     /// Who does not hold the optimum's level after all, in no order.
     pub fn deferrals(&self) -> impl Iterator<Item = Deferral> + '_ {
-        let debts =
-            self.debts.iter().map(|d| Deferral { candidate: d.candidate, chosen: d.best, owed: true });
-        let credits = self.credits.iter();
-        debts.chain(credits.map(|c| Deferral { candidate: c.candidate, chosen: c.best, owed: false }))
+        let debts = self.debts.iter().map(|d| (d.candidate, d.slot, d.best, true));
+        let credits = self.credits.iter().map(|c| (c.candidate, c.slot, c.best, false));
+        debts.chain(credits).map(|(candidate, slot, chosen, owed)| Deferral { candidate, slot, chosen, owed })
     }
 
     /// What the open accounts make of the optimum's benefit.
@@ -357,17 +362,21 @@ mod tests {
 
     use super::*;
 
-    /// Benefit, ticks, and what is held.
-    type Entry = (f64, u64, Held);
+    /// Benefit, ticks, and what is remembered of an object that holds level 2.
+    type Entry = (f64, u64, Remembered);
 
-    /// Holds level 2 for so long, after level `from`.
-    fn held(age_ms: u32, from: u8, owed_ms: u16, drops: u8) -> Held {
-        Held { level: Level(2), age_ms, account: Account { owed_ms, drops, from: Level(from) } }
+    /// It has held that level for so long, after level `from`.
+    fn held(age_ms: u32, from: u8, owed_ms: u16, drops: u8) -> Remembered {
+        Remembered { age_ms, account: Account { owed_ms, drops, from: Level(from) } }
     }
 
-    /// Holds what it holds for long.
-    fn owed(owed_ms: u16) -> Held {
+    /// It holds what it holds for long.
+    fn owed(owed_ms: u16) -> Remembered {
         held(u32::MAX, 0, owed_ms, 0)
+    }
+
+    fn holder(i: usize) -> Held {
+        Held { candidate: i as u32, slot: i as u32, level: Level(2) }
     }
 
     fn entry() -> impl Strategy<Value = Entry> {
@@ -398,7 +407,7 @@ mod tests {
         for (i, (&(benefit, cost, held), is_debt)) in all.enumerate() {
             let [little, much] = [offer(0, 0.0), offer(cost, benefit + 0.01)];
             let offers = if is_debt { [little, much] } else { [much, little] };
-            accounts.open(i as u32, Level(0), held, offers);
+            accounts.open(holder(i), Level(0), offers, || held);
         }
         accounts
     }
@@ -453,8 +462,8 @@ mod tests {
     }
 
     /// Whether a debt of 100 ticks is paid beside one that cannot be.
-    fn is_paid(steadiness: &Steadiness, benefit: f64, held: Held) -> bool {
-        let full = Held { account: Account { drops: 255, ..Account::NEW }, ..owed(0) };
+    fn is_paid(steadiness: &Steadiness, benefit: f64, held: Remembered) -> bool {
+        let full = Remembered { account: Account { drops: 255, ..Account::NEW }, ..owed(0) };
         let debts = [(benefit, 100, held), (20.0, 100, full)];
         let optimum = optimum(&debts, 0, 1000);
         settled(accounts(&debts, &[]), steadiness, &optimum).0 == [0]
@@ -518,7 +527,7 @@ mod tests {
         let offers =
             [[offer(5, 1.0), offer(5, 2.0)], [offer(5, 1.0), offer(4, 1.0)], [offer(4, 2.0), offer(5, 2.0)]];
         for (i, offers) in offers.into_iter().enumerate() {
-            accounts.open(i as u32, Level(i as u8), owed(0), offers);
+            accounts.open(holder(i), Level(i as u8), offers, || owed(0));
         }
         assert_eq!(accounts.settled, [(0, Level(0)), (1, Level(1)), (2, Level(2))]);
         assert!(accounts.debts.is_empty() && accounts.credits.is_empty());

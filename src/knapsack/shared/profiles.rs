@@ -179,6 +179,12 @@ impl Profiles {
         Some(Offer { ticks: scaled(found.ticks, class.scale), benefit })
     }
 
+    /// What a class of scale 1 costs and is worth with the item of this number, among those of all profiles.
+    pub fn offer_at(&self, item: u32, weight: f32) -> Offer {
+        let ProfileItem { value, ticks, .. } = self.items[item as usize];
+        Offer { ticks, benefit: f64::from(weight) * f64::from(value) }
+    }
+
     /// The position that holds `item`, or else the costliest one that costs no more than it; the cheapest for an item
     /// that the profile was not made of. O(1) where items were given in the order of their codes without gaps.
     pub fn position_of(&self, profile: u32, item: u8) -> u8 {
