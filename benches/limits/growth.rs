@@ -6,7 +6,6 @@ use std::time::Duration;
 use plotters::prelude::*;
 
 use crate::camera::Camera;
-use crate::crowd;
 use crate::machine;
 use crate::ours::{self, Loop, Policy, Store};
 use crate::plan::{Plan, SEED};
@@ -16,6 +15,9 @@ use crate::scene::Scene;
 
 const ROWS: [&str; 2] = ["growth_visited", "growth_time"];
 const ROUNDS: usize = 6;
+
+/// The budget: what a display of 120 Hz leaves, less than the smallest scene could use.
+const BUDGET_US: f64 = 8_000.0;
 
 const SIZES: [usize; 5] = [100_000, 300_000, 1_000_000, 3_000_000, 10_000_000];
 /// With less memory than the largest scene needs, it is this large instead.
@@ -39,14 +41,10 @@ pub fn measure(plan: &Plan, findings: &mut Findings) -> Vec<Point> {
         return Vec::new();
     }
     let sizes = sizes(plan, findings);
-    let small = Scene::scatter(sizes[0], SEED);
-    let camera = Camera::in_the_middle(&small);
-    let visible = crowd::in_view(&small, &ours::lens(&camera));
-    let budget_us = crowd::in_us(crowd::budget(&small, &visible));
     let mut points: Vec<Point> = Vec::new();
     for objects in sizes {
         let mut subjects = [Subject::new(SIZES[0].min(objects)), Subject::new(objects)];
-        points.push(point(plan, objects, &mut subjects, budget_us));
+        points.push(point(plan, objects, &mut subjects));
     }
     if let [first, .., last] = &points[..] {
         findings.row("growth_visited", Some(last.visits as f64 / first.visits as f64));
@@ -87,21 +85,21 @@ impl Subject {
         Self { store, camera, frames: Loop::new(Policy::Predictive) }
     }
 
-    fn frame(&mut self, round: usize, budget_us: f64) -> (ours::Done, Duration) {
+    fn frame(&mut self, round: usize) -> (ours::Done, Duration) {
         let mut done = ours::Done::default();
         let camera = self.camera.at_frame(round);
-        let time = timed(|| done = self.frames.frame(&mut self.store, &camera, budget_us));
+        let time = timed(|| done = self.frames.frame(&mut self.store, &camera, BUDGET_US));
         (done, time)
     }
 }
 
-fn point(plan: &Plan, objects: usize, [small, large]: &mut [Subject; 2], budget_us: f64) -> Point {
+fn point(plan: &Plan, objects: usize, [small, large]: &mut [Subject; 2]) -> Point {
     let mut done = ours::Done::default();
     let contestants = vec![
-        Contestant::new("small", |round| small.frame(round, budget_us).1),
+        Contestant::new("small", |round| small.frame(round).1),
         Contestant::new("large", |round| {
             let time;
-            (done, time) = large.frame(round, budget_us);
+            (done, time) = large.frame(round);
             time
         }),
     ];

@@ -62,7 +62,7 @@ impl PredictiveOptions {
         match previous {
             _ if self.steadiness.is_some() => 0.0,
             None => 0.0,
-            Some(_) if age_ms() < self.dwell_ms => self.dwell,
+            Some(_) if self.dwell > self.hysteresis && age_ms() < self.dwell_ms => self.dwell,
             Some(_) => self.hysteresis,
         }
     }
