@@ -283,7 +283,8 @@ crate's are. The strong frame keeps its objects along a Morton curve. The box qu
 the view.
 
 **Growth.** The scene grows around a camera in its middle that sees a quarter of it without end. Objects may be
-left out (`Settings::may_skip`), and the budget is the same for all sizes. *Visits* are objects tested one by
+left out (`Settings::may_skip`), and the budget is 8 ms for all sizes, which even the smallest could spend several times
+over: with more than it can use, a small scene would draw all that it has. *Visits* are objects tested one by
 one plus objects rated. Each size is timed in turns with the smallest.
 
 ![Visits and time over the number of objects](growth.svg)

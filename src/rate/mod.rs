@@ -8,16 +8,17 @@
 mod benefit;
 mod cost;
 mod levels;
+mod weigh;
 
 pub use benefit::BenefitModel;
 pub use cost::{CostModel, CostModelError, DRIVER_NAMES, DRIVERS, Drivers, Stages, drivers_of};
 pub use levels::{LevelRate, TableRates, estimated_error};
+pub use weigh::weigh;
 
 use glam::Vec3;
 
 use crate::cull::VisibleBlock;
-use crate::frame::{Candidate, Candidates, PixelSum, Row};
-use crate::kernel::{Divisible, Kernel, run_on};
+use crate::frame::{Candidate, Candidates, PixelSum};
 use crate::scene::{BLOCK, Block, Objects, Settings, lanes};
 use crate::table::Level;
 use crate::view::Lens;
@@ -40,135 +41,18 @@ pub fn cost_us(model: &CostModel, rates: &TableRates, candidate: &Candidate, lev
     model.object_us(geometry_us, f64::from(candidate.cost_scale), f64::from(candidate.area_px2))
 }
 
-/// Appends the candidates of a group of one view without their details: weights and the sum of areas; the sizes too
-/// where they are asked for. On so many threads where there are many objects (feature `rayon`). The caller closes the run with [`Candidates::end_group`]. Candidates must not be detailed.
-pub fn weigh(
-    objects: &Objects,
-    seen: &Seen,
-    model: &BenefitModel,
-    with_sizes: bool,
-    threads: usize,
-    candidates: &mut Candidates,
-) {
-    let (first, first_row) = (candidates.len(), candidates.rows.len());
-    candidates.push_blocks(seen.visible.iter().map(|v| (v.block, v.mask)));
-    let Candidates { rows, weight, .. } = &mut *candidates;
-    let (rows, weight) = (&rows[first_row..], &mut weight[first..]);
-    let weighed = run_on(threads, Weighing { objects, lens: &seen.lens, model, rows, weight });
-    candidates.pixels.add(weighed.pixels);
-    candidates.heaviest = candidates.heaviest.max(weighed.heaviest);
-    if with_sizes {
-        for &VisibleBlock { block, mask } in &seen.visible {
-            candidates.push_sizes(mask, &sizes_px(objects, block, &seen.lens, mask));
-        }
+/// A candidate of a group of one view, its details worked out from the object.
+pub fn details(objects: &Objects, rates: &TableRates, lens: &Lens, slot: u32, weight: f32) -> Candidate {
+    let (block, lane) = (&objects.blocks()[slot as usize / BLOCK], slot as usize % BLOCK);
+    let (area_px2, size_px, near_px) = lens.project(&block.sphere(lane));
+    let table = block.table[lane];
+    let allowed = rates.whole(table);
+    let mut candidate =
+        Candidate { slot, table, allowed, weight, cost_scale: 1.0, size_px, near_px, area_px2 };
+    if block.special & (1 << lane) != 0 {
+        heed(&mut candidate, objects.settings(slot as usize), rates.levels(table).len());
     }
-}
-
-/// Rows whose candidates are to be weighed, and where their weights go.
-struct Weighing<'a> {
-    objects: &'a Objects,
-    lens: &'a Lens,
-    model: &'a BenefitModel,
-    rows: &'a [Row],
-    weight: &'a mut [f32],
-}
-
-/// What weighing adds up.
-struct Weighed {
-    /// Areas as they count for the pixel stage, rounded.
-    pixels: f64,
-    heaviest: f32,
-}
-
-impl Kernel for Weighing<'_> {
-    type Sum = Weighed;
-
-    #[inline(always)]
-    fn run(self) -> Weighed {
-        let start = self.rows.first().map_or(0, |row| row.first) as usize;
-        let (mut pixels, mut heaviest) = ([0.0; BLOCK], [0.0f32; BLOCK]);
-        for row in self.rows {
-            let block = &self.objects.blocks()[row.block as usize];
-            let mut weight = [0.0; BLOCK];
-            for (lane, area) in weight.iter_mut().enumerate() {
-                *area = self.lens.area_px2(&block.sphere(lane));
-            }
-            let costly = costly_areas(self.objects, row.block, block, &weight, row.mask);
-            if !self.model.is_plain() {
-                attend(self.objects, row.block, block, self.lens, row.mask, self.model, &mut weight);
-            }
-            let at = row.first as usize - start;
-            for lane in 0..BLOCK {
-                weight[lane] *= block.gain[lane];
-                pixels[lane] += costly[lane];
-            }
-            if row.mask == u16::MAX {
-                self.weight[at..at + BLOCK].copy_from_slice(&weight);
-            } else {
-                let weights = &mut self.weight[at..at + row.mask.count_ones() as usize];
-                lanes(row.mask).zip(weights).for_each(|(lane, to)| *to = weight[lane]);
-                lanes(!row.mask).for_each(|lane| weight[lane] = 0.0);
-            }
-            for lane in 0..BLOCK {
-                heaviest[lane] = if weight[lane] > heaviest[lane] { weight[lane] } else { heaviest[lane] };
-            }
-        }
-        Weighed { pixels: pixels.iter().sum(), heaviest: heaviest.into_iter().fold(0.0, f32::max) }
-    }
-}
-
-impl Divisible for Weighing<'_> {
-    fn len(&self) -> usize {
-        self.weight.len()
-    }
-
-    fn halves(self) -> [Self; 2] {
-        let start = self.rows.first().map_or(0, |row| row.first);
-        let (rows, other_rows) = self.rows.split_at(self.rows.len() / 2);
-        let at = other_rows.first().map_or(0, |row| row.first - start) as usize;
-        let (weight, other_weight) = self.weight.split_at_mut(at);
-        [Self { rows, weight, ..self }, Self { rows: other_rows, weight: other_weight, ..self }]
-    }
-
-    fn join([a, b]: [Weighed; 2]) -> Weighed {
-        Weighed { pixels: a.pixels + b.pixels, heaviest: a.heaviest.max(b.heaviest) }
-    }
-}
-
-/// The projected diameters of the lanes of `mask`, bias included, and of the others as they are.
-fn sizes_px(objects: &Objects, index: u32, lens: &Lens, mask: u16) -> [f32; BLOCK] {
-    let block = &objects.blocks()[index as usize];
-    let mut sizes_px = [0.0; BLOCK];
-    for (lane, size_px) in sizes_px.iter_mut().enumerate() {
-        *size_px = lens.size_px(&block.sphere(lane));
-    }
-    for lane in lanes(block.special & mask) {
-        sizes_px[lane] *= objects.settings(index as usize * BLOCK + lane).bias;
-    }
-    sizes_px
-}
-
-/// The areas of the lanes of `mask` as they count for the pixel stage, rounded so that their sum is exact.
-#[inline(always)]
-fn costly_areas(
-    objects: &Objects,
-    index: u32,
-    block: &Block,
-    area: &[f32; BLOCK],
-    mask: u16,
-) -> [f64; BLOCK] {
-    let mut costly = [0.0; BLOCK];
-    for (lane, costly) in costly.iter_mut().enumerate() {
-        *costly = PixelSum::rounded(area[lane]);
-    }
-    for lane in lanes(block.special & mask) {
-        let multiplier = objects.settings(index as usize * BLOCK + lane).cost_multiplier;
-        costly[lane] = PixelSum::rounded(area[lane] * multiplier);
-    }
-    for lane in lanes(!mask) {
-        costly[lane] = 0.0;
-    }
-    costly
+    candidate
 }
 
 /// Weighs the areas of the lanes of `mask` by focus and motion.
@@ -188,20 +72,6 @@ fn attend(
         };
         area[lane] *= model.attention(lens, &block.sphere(lane), velocity);
     }
-}
-
-/// A candidate of a group of one view, its details worked out from the object.
-pub fn details(objects: &Objects, rates: &TableRates, lens: &Lens, slot: u32, weight: f32) -> Candidate {
-    let (block, lane) = (&objects.blocks()[slot as usize / BLOCK], slot as usize % BLOCK);
-    let (area_px2, size_px, near_px) = lens.project(&block.sphere(lane));
-    let table = block.table[lane];
-    let allowed = rates.whole(table);
-    let mut candidate =
-        Candidate { slot, table, allowed, weight, cost_scale: 1.0, size_px, near_px, area_px2 };
-    if block.special & (1 << lane) != 0 {
-        heed(&mut candidate, objects.settings(slot as usize), rates.levels(table).len());
-    }
-    candidate
 }
 
 /// What the views of a group see of one block: a column per quantity, sums and maxima over the views.
