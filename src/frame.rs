@@ -79,6 +79,8 @@ pub struct Candidates {
     pub pixels: PixelSum,
     /// The blocks that the candidates are in, in the same order.
     pub rows: Vec<Row>,
+    /// Of every sixteenth candidate, its row.
+    row_of: Vec<u32>,
     /// Where each group's candidates end, in the order of groups.
     pub ends: Vec<GroupEnd>,
 }
@@ -282,6 +284,7 @@ impl Candidates {
         self.pixels = PixelSum::default();
         self.deferred.clear();
         self.rows.clear();
+        self.row_of.clear();
         self.ends.clear();
     }
 
@@ -294,11 +297,16 @@ impl Candidates {
 
     /// Adds the candidates of blocks, given with their masks. Their weights are yet to be written.
     pub(crate) fn push_blocks(&mut self, blocks: impl Iterator<Item = (u32, u16)>) {
-        for (block, mask) in blocks {
-            self.rows.push(Row { block, mask, known: 0, deferred: 0, first: self.len as u32 });
-            self.len += mask.count_ones() as usize;
-        }
+        blocks.for_each(|(block, mask)| self.begin_row(block, mask));
         self.weight.resize(self.len, 0.0);
+    }
+
+    fn begin_row(&mut self, block: u32, mask: u16) {
+        self.rows.push(Row { block, mask, known: 0, deferred: 0, first: self.len as u32 });
+        self.len += mask.count_ones() as usize;
+        if self.row_of.len() * BLOCK < self.len {
+            self.row_of.push(self.rows.len() as u32 - 1);
+        }
     }
 
     /// Makes the columns of memory as long as the others. They are yet to be written.
@@ -321,9 +329,11 @@ impl Candidates {
     /// Adds the candidates of a block: those in `mask`, with the weights in their lanes. Not their details, not their
     /// memory of earlier frames.
     pub fn push_row(&mut self, block: u32, mask: u16, weight: &[f32; BLOCK]) {
-        self.rows.push(Row { block, mask, known: 0, deferred: 0, first: self.len() as u32 });
+        self.weight.truncate(self.len);
+        self.begin_row(block, mask);
         for lane in lanes(mask) {
-            self.push_weight(weight[lane]);
+            self.weight.push(weight[lane]);
+            self.heaviest = self.heaviest.max(weight[lane]);
         }
     }
 
@@ -338,17 +348,13 @@ impl Candidates {
 
     /// Adds a candidate without memory of earlier frames, and its details.
     pub fn push(&mut self, c: Candidate) {
-        self.push_weight(c.weight);
+        self.weight.truncate(self.len);
+        self.weight.push(c.weight);
+        self.heaviest = self.heaviest.max(c.weight);
+        self.len += 1;
         self.pixels.add(PixelSum::rounded(c.area_px2));
         self.push_details(c);
         self.forget_memory();
-    }
-
-    fn push_weight(&mut self, weight: f32) {
-        self.weight.truncate(self.len);
-        self.weight.push(weight);
-        self.len += 1;
-        self.heaviest = self.heaviest.max(weight);
     }
 
     /// Adds to the columns of details alone.
@@ -374,7 +380,7 @@ impl Candidates {
         Some(self.held[i]).filter(|&level| level != NEWCOMER)
     }
 
-    /// The slot of candidate `i`. O(1) of detailed ones, else O(log rows).
+    /// The slot of candidate `i`. O(1).
     pub fn slot_of(&self, i: usize) -> u32 {
         match self.slot.get(i) {
             Some(&slot) => slot,
@@ -382,9 +388,10 @@ impl Candidates {
         }
     }
 
-    /// The row of candidate `i`.
+    /// The row of candidate `i`, which is not detailed: at most sixteen rows on from that of the sixteenth before.
     fn row_of(&self, i: usize) -> &Row {
-        &self.rows[self.rows.partition_point(|row| row.first as usize <= i) - 1]
+        let rows = &self.rows[self.row_of[i / BLOCK] as usize..];
+        &rows[rows[1..].iter().take_while(|row| row.first as usize <= i).count()]
     }
 
     /// The slots of candidates, in order.

@@ -2,7 +2,7 @@
 
 use super::Runtime;
 use crate::frame::{Cause, GroupId};
-use crate::scene::{ObjectId, Objects, Settings};
+use crate::scene::{BLOCK, ObjectId, Objects, Settings};
 use crate::table::Level;
 use crate::transition::Shown;
 
@@ -48,18 +48,25 @@ impl Runtime {
     /// Why candidate `i` is shown as it is and not finer. The first reason that applies, in the order of precedence:
     /// resident > forced > clamp > budget > dwell and hysteresis.
     pub(super) fn cause(&self, objects: &Objects, i: usize, shown: Shown) -> Cause {
-        let candidate = self.last_frame(objects).candidate(i);
         if shown.is_in_flight() || shown.level != self.scratch.levels[i] {
             Cause::Fading
         } else if !shown.level.is_drawn() {
             Cause::TooSmall
         } else if shown.level == Level::FINEST {
             Cause::Finest
-        } else if shown.level == candidate.allowed.finest {
-            narrowed_by(objects.settings(candidate.slot as usize), shown.level)
+        } else if let Some(settings) = self.narrowed(objects, i, shown.level) {
+            narrowed_by(settings, shown.level)
         } else {
             self.selector.cause(&self.last_frame(objects), i, shown.level)
         }
+    }
+
+    /// The settings of candidate `i` where `level`, not the finest of its table, is the finest that it may be shown at.
+    fn narrowed<'a>(&self, objects: &'a Objects, i: usize, level: Level) -> Option<&'a Settings> {
+        let (candidates, slot) = (&self.scratch.candidates, self.scratch.candidates.slot_of(i) as usize);
+        let special = objects.blocks()[slot / BLOCK].special & (1 << (slot % BLOCK)) != 0;
+        let is_finest = || self.last_frame(objects).candidate(i).allowed.finest == level;
+        ((special || candidates.is_detailed()) && is_finest()).then(|| objects.settings(slot))
     }
 
     fn next_value(&self, objects: &Objects, i: usize, level: Level) -> f64 {
