@@ -7,7 +7,7 @@ use lod_budget::frame::FrameReport;
 use lod_budget::knapsack::{ProfileItem, SharedClass, SharedKnapsack};
 use lod_budget::rate::Stages;
 use lod_budget::scene::TableId;
-use lod_budget::select::{Frame, PredictiveOptions, ScreenSizeOptions};
+use lod_budget::select::{Frame, Needs, PredictiveOptions, ScreenSizeOptions};
 use lod_budget::table::LevelRecord;
 use lod_budget::view::{Projection, Window};
 use lod_budget::{
@@ -151,6 +151,10 @@ fn free_of_charge() -> Predictive {
 struct Forgetful(Predictive);
 
 impl Selector for Forgetful {
+    fn needs(&self) -> Needs {
+        self.0.needs()
+    }
+
     fn select(&mut self, frame: &Frame<'_>, levels: &mut [Level]) -> lod_budget::frame::SelectReport {
         self.0.reset();
         self.0.select(frame, levels)
