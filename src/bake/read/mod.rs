@@ -1,4 +1,4 @@
-//! Meshes from files: [`obj`], [`ply`], [`off`], [`stl`] and glTF.
+//! Meshes from files: [`obj`], [`ply`], [`off`], [`stl`] and [`gltf`].
 //!
 //! All of a file becomes one mesh, its parts as groups. Positions are welded exactly; wedges keep what differs.
 //! Nothing is trusted: an error names the file, the line or element and the rule it breaks, and memory grows with the
@@ -7,6 +7,7 @@
 //!
 //! [`load`] is what most want: read, then repaired.
 
+pub mod gltf;
 pub mod obj;
 pub mod off;
 pub mod ply;
@@ -172,7 +173,7 @@ pub fn read(path: &Path) -> Result<MeshFile, MeshError> {
         Refused::whole("it must end in .obj, .ply, .off, .stl, .gltf or .glb").within(&file)
     })?;
     match format {
-        Format::Gltf => Err(Refused::whole("glTF is not read yet").within(&file)),
+        Format::Gltf => gltf::read(&bytes, &file, path.parent()),
         format => from_bytes(&bytes, &file, format),
     }
 }
@@ -187,7 +188,7 @@ pub fn from_bytes(bytes: &[u8], file: &str, format: Format) -> Result<MeshFile, 
         Format::Ply => ply::read(bytes, file),
         Format::Off => off::read(bytes, file),
         Format::Stl => stl::read(bytes, file),
-        Format::Gltf => Err(Refused::whole("glTF is not read yet").within(file)),
+        Format::Gltf => gltf::read(bytes, file, None),
     }
 }
 
