@@ -95,11 +95,14 @@ impl Finding {
         Self { defect, count: 0, first: Vec::new(), is_complete: true }
     }
 
-    /// One more; the place is asked for only while places are still kept.
+    /// One more. The place is asked for only while places are still kept, and kept if it is not the last one again.
     pub(super) fn add(&mut self, place: impl FnOnce() -> String) {
         self.count += 1;
         if self.first.len() < PLACES {
-            self.first.push(place());
+            let place = place();
+            if self.first.last() != Some(&place) {
+                self.first.push(place);
+            }
         }
     }
 }

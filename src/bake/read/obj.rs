@@ -259,7 +259,7 @@ mod tests {
         assert!(file.mesh.normals.is_empty() && file.mesh.uvs.is_empty());
         assert_eq!(
             file.findings[0].to_string(),
-            "2 corners with an unknown normal or texture coordinate, taken as without: line 5, line 5"
+            "2 corners with an unknown normal or texture coordinate, taken as without: line 5 …"
         );
     }
 
