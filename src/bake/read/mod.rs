@@ -196,3 +196,11 @@ pub fn from_bytes(bytes: &[u8], file: &str, format: Format) -> Result<MeshFile, 
 fn stem(file: &str) -> String {
     Path::new(file).file_stem().and_then(|s| s.to_str()).unwrap_or(file).to_owned()
 }
+
+/// A name as far as it is kept: names are repeated where groups alternate, and a file may have one of a megabyte.
+fn short_name(name: &str) -> String {
+    name.chars().take(LONGEST_NAME).collect()
+}
+
+/// In characters.
+const LONGEST_NAME: usize = 256;

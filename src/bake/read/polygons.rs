@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::text::quoted;
 use super::triangulate::{TooConcave, Triangulator};
-use super::{MeshFile, Origins, Refused};
+use super::{MeshFile, Origins, Refused, short_name};
 use crate::bake::finding::{Defect, Findings};
 use crate::bake::mesh::{Group, Mesh};
 use crate::bake::weld::{classes, weld};
@@ -213,9 +213,9 @@ pub(super) fn colour(parts: &[f32]) -> Option<Vec4> {
     }
 }
 
-/// A name as the file spells it, as far as it is UTF-8.
+/// A name as the file spells it, as far as it is UTF-8 and not too long.
 pub(super) fn name_of(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes.trim_ascii()).into_owned()
+    short_name(&String::from_utf8_lossy(bytes.trim_ascii()))
 }
 
 /// "'x' must be …", for a word that starts nothing known.

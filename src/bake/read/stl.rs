@@ -73,9 +73,8 @@ fn add_corner(polygons: &mut Polygons, position: Vec3) {
 
 fn read_text(text: &[u8]) -> Result<Polygons, Refused> {
     let mut polygons = Polygons::new("line");
-    let mut lines = Lines::of(text);
     let mut open = None;
-    while let Some(line) = lines.next() {
+    for line in Lines::of(text) {
         read_words(line, &mut open, &mut polygons)?;
     }
     match open {

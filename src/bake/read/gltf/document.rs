@@ -8,6 +8,7 @@ use ::gltf::json;
 use serde::Deserialize;
 
 use super::Refused;
+use crate::bake::read::short_name;
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
@@ -125,13 +126,13 @@ impl<'a> Document<'a> {
     }
 
     pub(super) fn material(&self, index: usize) -> String {
-        let name = self.materials.get(index).and_then(|m| m.name.clone());
-        name.unwrap_or_else(|| format!("material {index}"))
+        let name = self.materials.get(index).and_then(|m| m.name.as_deref());
+        name.map_or_else(|| format!("material {index}"), short_name)
     }
 
     pub(super) fn mesh_name(&self, mesh: usize) -> String {
-        let name = self.meshes.get(mesh).and_then(|m| m.name.clone());
-        name.unwrap_or_else(|| format!("mesh {mesh}"))
+        let name = self.meshes.get(mesh).and_then(|m| m.name.as_deref());
+        name.map_or_else(|| format!("mesh {mesh}"), short_name)
     }
 }
 
@@ -248,8 +249,10 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     Ok((json, (kind == b"BIN\0").then_some(blob)))
 }
 
+type Chunk<'a> = (&'a [u8], &'a [u8], &'a [u8]);
+
 /// The first chunk's kind and bytes, and what follows.
-fn chunk(bytes: &[u8]) -> Result<(&[u8], &[u8], &[u8]), String> {
+fn chunk(bytes: &[u8]) -> Result<Chunk<'_>, String> {
     let cut = || "it is cut off within a chunk".to_owned();
     let length = u32_at(bytes, 0).ok_or_else(cut)? as usize;
     let kind = bytes.get(4..8).ok_or_else(cut)?;

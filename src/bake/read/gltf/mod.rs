@@ -57,9 +57,8 @@ pub fn read_meshes(bytes: &[u8], file: &str, folder: Option<&Path>) -> Result<Ve
         for mesh in 0..document.meshes.len() {
             let mut assembly = Assembly::new(&document, document.mesh_name(mesh), "mesh", left);
             assembly.add(&Placed::alone(mesh))?;
-            let file = assembly.into_file();
-            left -= file.mesh.triangles.len() as u64;
-            files.push(file);
+            left = assembly.left();
+            files.push(assembly.into_file());
         }
         Ok(files)
     };

@@ -11,7 +11,7 @@ use super::document::Document;
 use super::nodes::Placed;
 use crate::bake::finding::{Defect, Findings};
 use crate::bake::mesh::{Group, Mesh, Skin};
-use crate::bake::read::{MeshFile, Origins};
+use crate::bake::read::{MeshFile, Origins, short_name};
 use crate::bake::weld::{classes, weld};
 
 /// How many sets of texture coordinates are read.
@@ -26,8 +26,8 @@ pub(super) struct Assembly<'a> {
     mesh: Mesh,
     origins: Origins,
     findings: Findings,
-    /// How many triangles it may have.
-    limit: u64,
+    /// How many more triangles it may have. A primitive counts as one at least, so that empty ones do not go on for ever.
+    left: u64,
 }
 
 /// How many triangles the file may be made into.
@@ -37,14 +37,14 @@ pub(super) fn triangle_limit(document: &Document<'_>) -> u64 {
 
 impl<'a> Assembly<'a> {
     /// `element` is what a triangle's origin counts: nodes or meshes.
-    pub(super) fn new(document: &'a Document<'a>, name: String, element: &'static str, limit: u64) -> Self {
+    pub(super) fn new(document: &'a Document<'a>, name: String, element: &'static str, left: u64) -> Self {
         let origins = Origins { element, numbers: Vec::new() };
         Self {
             document,
             mesh: Mesh { name, ..Mesh::default() },
             origins,
             findings: Findings::default(),
-            limit,
+            left,
         }
     }
 
@@ -66,6 +66,11 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
+    /// How many triangles are left for others.
+    pub(super) fn left(&self) -> u64 {
+        self.left
+    }
+
     /// The mesh, welded.
     pub(super) fn into_file(mut self) -> MeshFile {
         weld(&mut self.mesh);
@@ -73,7 +78,8 @@ impl<'a> Assembly<'a> {
     }
 
     fn place(&self, placed: &Placed) -> String {
-        let name = |name: Option<&String>| name.map_or_else(String::new, |name| format!(" {name:?}"));
+        let name =
+            |name: Option<&String>| name.map_or_else(String::new, |name| format!(" {:?}", short_name(name)));
         let mesh = name(self.document.meshes.get(placed.mesh).and_then(|m| m.name.as_ref()));
         let mesh = format!("mesh {}{mesh}", placed.mesh);
         let Some(node) = placed.node else { return mesh };
@@ -87,6 +93,7 @@ impl<'a> Assembly<'a> {
         name: &str,
         place: &dyn Fn() -> String,
     ) -> Result<(), String> {
+        self.charge(1)?;
         let Checked::Valid(mode) = primitive.mode else {
             return Err("its mode must be one of 0 to 6".to_owned());
         };
@@ -117,9 +124,15 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
+    fn charge(&mut self, triangles: u64) -> Result<(), String> {
+        let left = self.left.checked_sub(triangles);
+        self.left = left.ok_or("with it there are more triangles than the file has bytes")?;
+        Ok(())
+    }
+
     /// The vertex of every corner, all known to be there, unless they make too many triangles.
     fn indices(
-        &self,
+        &mut self,
         primitive: &json::mesh::Primitive,
         mode: Mode,
         vertices: usize,
@@ -127,9 +140,7 @@ impl<'a> Assembly<'a> {
         let rows = primitive.indices.map(|i| Rows::of(self.document, i.value(), &[1])).transpose()?;
         let count = rows.as_ref().map_or(vertices, |rows| rows.count);
         let new = if mode == Mode::Triangles { count / 3 } else { count.saturating_sub(2) };
-        if self.mesh.triangles.len() as u64 + new as u64 > self.limit {
-            return Err(format!("with it there are more triangles than the file has bytes: {}", self.limit));
-        }
+        self.charge(new.saturating_sub(1) as u64)?;
         let corners = if mode == Mode::Triangles {
             new * 3
         } else if new == 0 {

@@ -191,12 +191,20 @@ fn nodes_form_a_forest() {
 
 #[test]
 fn repeated_meshes_do_not_fill_the_memory() {
-    // Two meshes of two million corners out of four bytes would do, were counts believed.
-    let many = json(
-        &vec![r#"{"mesh":0}"#; 20].join(","),
-        &vec![r#"{"attributes":{"POSITION":0},"indices":1}"#; 10].join(","),
-    );
-    assert_eq!(read(&glb(&many, &square()), "a.glb", None).expect("valid").mesh.triangles.len(), 400);
+    let long = |nodes: usize| {
+        let text = json(&vec![r#"{"mesh":0}"#; nodes].join(","), PLAIN)
+            .replace(r#""byteOffset":48,"byteLength":8"#, r#""byteOffset":136,"byteLength":30000"#)
+            .replace(r#""count":6"#, r#""count":30000"#)
+            .replace(r#""byteLength":136"#, r#""byteLength":30136"#);
+        read(&glb(&text, &[square(), vec![0; 30000]].concat()), "a.glb", None)
+    };
+    assert_eq!(long(50).expect("half a million").mesh.triangles.len(), 500_000);
+    let error = long(200).expect_err("two millions").to_string();
+    let place = "a.glb: node 104, mesh 0 \"square\", primitive 0: ";
+    assert_eq!(error, format!("{place}with it there are more triangles than the file has bytes"));
+    let empty = vec![r#"{"attributes":{"POSITION":0},"mode":0}"#; 2000].join(",");
+    let error = read(&glb(&json(&vec![r#"{"mesh":0}"#; 600].join(","), &empty), &square()), "a.glb", None);
+    assert!(error.expect_err("more than a million points").to_string().contains("more triangles than"));
     let zeros = json(r#"{"mesh":0}"#, r#"{"attributes":{"POSITION":5}}"#)
         .replace(r#""count":4,"type":"VEC3","sparse""#, r#""count":4000000000,"type":"VEC3","sparse""#);
     let error = read(&glb(&zeros, &square()), "a.glb", None).expect_err("refused").to_string();
