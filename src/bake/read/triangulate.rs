@@ -15,9 +15,9 @@ pub(super) struct Triangulator {
     ring: Ring,
 }
 
-/// Of one file. Every corner may block every ear, so a concave polygon takes quadratic time: this is some tens of
-/// seconds. Concave polygons of a thousand corners take a millionth of it.
-const EFFORT: u64 = 1 << 32;
+/// Of one file: about ten seconds. Every corner may block every ear, so a concave polygon takes quadratic time; one of a
+/// thousand corners takes a thousandth of this.
+const EFFORT: u64 = 1 << 31;
 
 impl Default for Triangulator {
     fn default() -> Self {
