@@ -9,7 +9,8 @@ pub enum Defect {
     ShortFace,
     /// A corner names a normal or texture coordinate that the file does not have. It gets none.
     UnknownAttribute,
-    /// Something that is no triangle or that nobody here can use: lines, points, curves, unknown statements. Passed over.
+    /// Something that is no triangle or that nobody here can use: lines, points, curves, unknown statements. Passed
+    /// over.
     Unread(&'static str),
     /// A corner's position is infinite or no number. The face is left out.
     NotFinitePosition,

@@ -1,10 +1,10 @@
 //! Wavefront OBJ (*Advanced Visualizer manual, appendix B1: object files*).
 //!
-//! Read are `v` (with a weight, which is passed over, or a colour behind it), `vt` (its first two numbers), `vn`, `f` with
-//! any number of corners and with negative indices, `o`, `g` and `usemtl`. Material files are not opened: a group has
-//! its material's name. A line that ends in `\` goes on in the next one; what follows `#` is a comment, but not in
-//! names. Indices may point forward. A corner whose normal or texture coordinate is not there has none, which is
-//! reported, as are faces of fewer than three corners and statements that make no triangles; a vertex that is not
+//! Read are `v` (with a weight, which is passed over, or a colour behind it), `vt` (its first two numbers), `vn`, `f`
+//! with any number of corners and with negative indices, `o`, `g` and `usemtl`. Material files are not opened: a
+//! group has its material's name. A line that ends in `\` goes on in the next one; what follows `#` is a comment, but
+//! not in names. Indices may point forward. A corner whose normal or texture coordinate is not there has none, which
+//! is reported, as are faces of fewer than three corners and statements that make no triangles; a vertex that is not
 //! there is refused.
 //!
 //! An own reader rather than the `tobj` crate: that names neither file nor line in its errors, reads UTF-8 alone, knows

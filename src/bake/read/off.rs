@@ -2,8 +2,8 @@
 //!
 //! A vertex a line and a face a line; `#` starts a comment. The letters before `OFF` say what follows a vertex's
 //! position: `N` a normal, `C` a colour of three or four numbers (in 255ths where any is above 1), `ST` a texture
-//! coordinate. Colours of faces are passed over. The number of edges may be missing and says nothing. Refused are binary
-//! files and those of other dimensions (`4OFF`, `nOFF`).
+//! coordinate. Colours of faces are passed over. The number of edges may be missing and says nothing. Refused are
+//! binary files and those of other dimensions (`4OFF`, `nOFF`).
 
 use glam::{Vec2, Vec3, Vec4};
 

@@ -1,9 +1,9 @@
 //! STL, text and binary (3D Systems, *StereoLithography interface specification*, 1988).
 //!
-//! A file whose length is what the count in its 81st to 84th byte makes of it is binary, whatever it starts with; others
-//! that start with `solid` are text. Normals, attributes and colours of facets are passed over: the corners tell the
-//! normal. Text may have several solids, each a group, and is read word by word. A facet is known by its number, from 0
-//! on, in binary files.
+//! A file whose length is what the count in its 81st to 84th byte makes of it is binary, whatever it starts with;
+//! others that start with `solid` are text. Normals, attributes and colours of facets are passed over: the corners
+//! tell the normal. Text may have several solids, each a group, and is read word by word. A facet is known by its
+//! number, from 0 on, in binary files.
 
 use glam::Vec3;
 

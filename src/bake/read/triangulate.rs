@@ -15,8 +15,8 @@ pub(super) struct Triangulator {
     ring: Ring,
 }
 
-/// Of one file: about ten seconds. Every corner may block every ear, so a concave polygon takes quadratic time; one of a
-/// thousand corners takes a thousandth of this.
+/// Of one file: about ten seconds. Every corner may block every ear, so a concave polygon takes quadratic time; one
+/// of a thousand corners takes a thousandth of this.
 const EFFORT: u64 = 1 << 31;
 
 impl Default for Triangulator {

@@ -1,19 +1,19 @@
 //! glTF 2.0, as `.gltf` with its buffers or `.glb`.
 //!
-//! [`read`] makes one mesh of the default scene (else the first, else all nodes without a parent, else all meshes as they
-//! are): every primitive of every node, moved to where the node puts it, each a group with its material's name. A node
-//! that mirrors turns its triangles over, so that they stay counter-clockwise. A skinned mesh stays where its joints expect it, as the
-//! specification says, and its joints are those of its own skin. Coarser levels (`MSFT_lod`) are left out. [`read_meshes`]
-//! gives every mesh of the file by itself, once, in its own units.
+//! [`read`] makes one mesh of the default scene (else the first, else all nodes without a parent, else all meshes as
+//! they are): every primitive of every node, moved to where the node puts it, each a group with its material's name.
+//! A node that mirrors turns its triangles over, so that they stay counter-clockwise. A skinned mesh stays where its
+//! joints expect it, as the specification says, and its joints are those of its own skin. Coarser levels (`MSFT_lod`)
+//! are left out. [`read_meshes`] gives every mesh of the file by itself, once, in its own units.
 //!
 //! Positions, normals, tangents, eight sets of texture coordinates, the first set of colours, joints and weights are
-//! read, from floats or integers, sparse or not. Points and lines, morph targets and further sets are passed over. Where
-//! one primitive has an attribute and another has not, the other's is zero, or white.
+//! read, from floats or integers, sparse or not. Points and lines, morph targets and further sets are passed over.
+//! Where one primitive has an attribute and another has not, the other's is zero, or white.
 //!
 //! The vocabulary is the `gltf` crate's; accessors are read here, because that crate takes sizes and counts on trust.
-//! Refused are accessors and indices out of range, and required extensions that change geometry (Draco, meshopt). Nodes
-//! and primitives may repeat what is in the file, but not into more triangles than the file has bytes, or 2²⁰ where that is
-//! more.
+//! Refused are accessors and indices out of range, and required extensions that change geometry (Draco, meshopt).
+//! Nodes and primitives may repeat what is in the file, but not into more triangles than the file has bytes, or 2²⁰
+//! where that is more.
 
 mod accessor;
 mod document;

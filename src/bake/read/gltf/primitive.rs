@@ -26,7 +26,8 @@ pub(super) struct Assembly<'a> {
     mesh: Mesh,
     origins: Origins,
     findings: Findings,
-    /// How many more triangles it may have. A primitive counts as one at least, so that empty ones do not go on for ever.
+    /// How many more triangles it may have. A primitive counts as one at least, so that empty ones do not go on for
+    /// ever.
     left: u64,
 }
 

@@ -3,8 +3,8 @@
 //! Properties may come in any order and may be of any type; those that nobody here knows are passed over, as are
 //! elements other than `vertex` and `face`. Known are `x y z`, `nx ny nz`, texture coordinates (`s t`, `u v`,
 //! `texture_u texture_v`), `red green blue alpha` (with `diffuse_` before them as well; integers are divided by their
-//! greatest), and of faces `vertex_indices` or `vertex_index`, and `texcoord`, two numbers per corner, which stands above
-//! those of the vertices. Triangle strips are refused. Text has an element a line.
+//! greatest), and of faces `vertex_indices` or `vertex_index`, and `texcoord`, two numbers per corner, which stands
+//! above those of the vertices. Triangle strips are refused. Text has an element a line.
 //!
 //! An own reader rather than the `ply-rs` crate: that holds every element as a map from names to values, many times the
 //! file's size, and names the line of some errors only.
