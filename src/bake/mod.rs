@@ -1,0 +1,22 @@
+//! From meshes to LOD tables: what is done once, before anything is drawn.
+//!
+//! | | |
+//! |---|---|
+//! | [`mesh`] | the one mesh type: welded positions, attributes per wedge |
+//! | [`surface`] | its geometry alone, for simplification and measuring |
+//! | [`mod@read`] | OBJ, PLY, OFF, STL and glTF |
+//! | [`weld`] | positions that are the same become one |
+//! | [`repair`] | what is wrong with a mesh, and what can be put right safely |
+//! | [`finding`] | what readers and repair have to report |
+
+pub mod finding;
+pub mod mesh;
+pub mod read;
+pub mod repair;
+pub mod surface;
+pub mod weld;
+
+pub use finding::{Defect, Finding};
+pub use mesh::{Group, Mesh, Skin};
+pub use read::{Format, MeshError, MeshFile};
+pub use surface::Surface;
