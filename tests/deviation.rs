@@ -118,7 +118,7 @@ fn check(a: &Surface, b: &Surface, found: &Deviation, options: &Options) {
     let allowed = (attained * options.relative).max(options.of_diagonal * diagonal(a).min(diagonal(b)));
     let reach = corners(a).iter().chain(&corners(b)).flatten().map(|p| p.length()).fold(0.0, f64::max);
     assert!(hausdorff >= attained, "{found:?}");
-    assert!(hausdorff <= attained + allowed * (1.0 + 1e-9) + 1e-11 * reach, "{found:?}");
+    assert!(hausdorff <= attained + allowed * (1.0 + 1e-9) + 1e-10 * reach, "{found:?}");
     for spread in [there, back] {
         assert!(
             spread.mean <= spread.rms * (1.0 + 1e-9) && spread.rms <= spread.max * (1.0 + 1e-9),
@@ -155,7 +155,7 @@ fn planes_are_as_far_apart_as_they_are() {
 #[test]
 fn one_plane_in_other_triangles_is_the_same_surface() {
     let apart = measured(&field(40, |_, _| 0.0), &field(7, |_, _| 0.0));
-    assert!(apart.hausdorff <= 1e-6 && apart.attained == 0.0, "{apart:?}");
+    assert!(apart.hausdorff <= 1e-10 && apart.attained == 0.0, "{apart:?}");
     let tilted = |x: f32, y: f32| 0.5 * x + 0.25 * y;
     let apart = measured(&field(64, tilted), &field(2, tilted));
     assert!(apart.hausdorff <= 2e-6, "{apart:?}");
@@ -207,6 +207,35 @@ fn an_inscribed_octahedron_lies_within_a_sphere() {
     let apart = measured(&sphere(96), &sphere(1));
     let expected = 1.0 - 1.0 / 3.0_f64.sqrt();
     assert!(is_near(apart.hausdorff, expected, 0.012), "{apart:?} {expected}");
+}
+
+/// Where triangles are laid over a surface: a gap in it and a hidden fold must not go unseen.
+#[test]
+fn a_hole_under_a_large_triangle_is_found() {
+    let whole = field(1, |_, _| 0.0);
+    for hole in [0, 77, 450, 799] {
+        let mut fine = field(20, |_, _| 0.0);
+        let gone = corners(&fine)[hole];
+        fine.triangles.remove(hole);
+        let apart = measured(&whole, &fine);
+        let (least, _) = brute_one_way(&surface_of(gone), &fine, 64);
+        assert!(apart.hausdorff >= least && apart.hausdorff <= least * 1.05, "{apart:?} {least}");
+    }
+}
+
+fn surface_of(triangle: [DVec3; 3]) -> Surface {
+    surface(triangle.iter().map(|p| p.as_vec3()).collect(), vec![[0, 1, 2]])
+}
+
+#[test]
+fn a_fold_under_a_large_triangle_is_bounded() {
+    let whole = field(1, |_, _| 0.0);
+    let mut folded = field(12, |x, y| 0.02 * (9.0 * x).sin() * (7.0 * y).cos());
+    // The middle column is drawn over its neighbours: an S in the section.
+    for p in folded.positions.iter_mut().filter(|p| p.x == 0.5) {
+        *p = Vec3::new(0.8, p.y, 0.05);
+    }
+    holds_against_brute_force(&whole, &folded);
 }
 
 #[test]

@@ -36,6 +36,16 @@ impl Facet {
         0.5 * self.base * self.height
     }
 
+    /// Height over base; 0 without a base.
+    pub(super) fn slenderness(&self) -> f64 {
+        if self.base > 0.0 { self.height / self.base } else { 0.0 }
+    }
+
+    /// A corner, and unit vectors along the base and towards the apex: what is counter-clockwise stays so.
+    pub(super) fn frame(&self) -> (DVec3, [DVec3; 2]) {
+        (self.corner, [self.along, self.across])
+    }
+
     /// The squared distance from `point` to the nearest point of the triangle.
     #[inline]
     pub(super) fn distance2(&self, point: DVec3) -> f64 {

@@ -3,6 +3,7 @@
 use std::collections::BinaryHeap;
 
 use super::Options;
+use super::overlay::{Cell, MOST_CORNERS, Overlay};
 use super::piece::Piece;
 use super::shape::Shape;
 
@@ -10,8 +11,9 @@ use super::shape::Shape;
 ///
 /// A corner of a piece is off the triangle by three units in the last place (2⁻⁵³ of the largest coordinate) per axis and
 /// cut, 6 · 2⁻⁵³ in length, and no piece is cut more than [`MOST_CUTS`] times: 3e-13. A distance is off by less than 50
-/// units. Distance to a set changes no faster than the point moves.
-const SLACK: f64 = 1e-12;
+/// units. Cells of an overlay leave no point of a triangle farther from them than 4e-15 · 4 / 0.02, 8e-13. Distance to a
+/// set changes no faster than the point moves.
+const SLACK: f64 = 1e-11;
 
 /// Pieces that were cut so often are left as they are.
 const MOST_CUTS: u16 = 400;
@@ -46,8 +48,10 @@ impl Extent {
 pub(super) fn bound(from: &Shape, to: &Shape, known: Extent, options: &Options) -> Extent {
     let mut search = Search::new(from, to, known, options);
     search.visit_vertices();
-    search.cover_triangles();
-    search.refine(options.max_splits.saturating_mul(from.corners.len() + to.corners.len()) + FREE_SPLITS);
+    let triangles = from.corners.len() + to.corners.len();
+    let most_splits = options.max_splits.saturating_mul(triangles).saturating_add(FREE_SPLITS);
+    search.cover_triangles(most_splits);
+    search.refine(most_splits);
     search.extent(known)
 }
 
@@ -118,7 +122,8 @@ impl<'a> Search<'a> {
     }
 
     /// Looks at every triangle: first at what is near to its corners, then at what is near to its centre.
-    fn cover_triangles(&mut self) {
+    fn cover_triangles(&mut self, most: usize) {
+        let mut overlay = Overlay::new(self.to, self.from.reach.max(self.to.reach));
         for (&corners, vertices) in self.from.corners.iter().zip(&self.from.triangles) {
             let near = vertices.map(|vertex| self.near[vertex as usize]);
             let mut piece = Piece { corners, near, also: near[0], depth: 0 };
@@ -128,7 +133,46 @@ impl<'a> Search<'a> {
             let nearest = self.to.bvh.nearest(piece.center(), near[0]);
             self.raise(nearest.distance2.sqrt());
             piece.also = nearest.triangle;
-            self.consider(piece);
+            if !self.settles(&piece) && !self.settles_in_cells(&piece, &mut overlay, most) {
+                self.consider(piece);
+            }
+        }
+    }
+
+    /// Lays a triangle over the other surface and takes the cells that are not close enough into the queue; false where it
+    /// cannot be laid over it.
+    fn settles_in_cells(&mut self, piece: &Piece, overlay: &mut Overlay, most: usize) -> bool {
+        let (mut left2, mut far) = (self.left2, Vec::new());
+        let (bvh, close2) = (&self.to.bvh, self.close2);
+        let mut visited = 0;
+        let cells = overlay.lay(&piece.corners, piece.also, most.saturating_sub(self.splits), |cell| {
+            visited += 1;
+            let distances2 = cell.corners().iter().map(|&corner| bvh.distance2(cell.triangle, corner));
+            match distances2.fold(0.0, f64::max) {
+                most2 if most2 <= close2 => left2 = left2.max(most2),
+                _ => far.push(*cell),
+            }
+        });
+        self.splits += visited;
+        if cells.is_some() {
+            self.left2 = left2;
+            far.iter().for_each(|cell| self.consider_cell(cell));
+        }
+        cells.is_some()
+    }
+
+    /// Takes a cell into the queue as a fan of pieces.
+    fn consider_cell(&mut self, cell: &Cell) {
+        let mut near = [cell.triangle; MOST_CORNERS];
+        for (near, &corner) in near.iter_mut().zip(cell.corners()) {
+            let nearest = self.to.bvh.nearest(corner, cell.triangle);
+            self.raise(nearest.distance2.sqrt());
+            *near = nearest.triangle;
+        }
+        for k in 2..cell.corners().len() {
+            let pick = [0, k - 1, k];
+            let (corners, near) = (pick.map(|i| cell.corners()[i]), pick.map(|i| near[i]));
+            self.consider(Piece { corners, near, also: cell.triangle, depth: 0 });
         }
     }
 

@@ -37,6 +37,7 @@ use crate::bake::surface::Surface;
 mod bvh;
 mod facet;
 mod hausdorff;
+mod overlay;
 mod piece;
 mod sampling;
 mod shape;
@@ -58,8 +59,9 @@ pub struct Options {
     pub rms_error: f64,
     /// The most samples taken in each direction; where most of a surface is exact, they end before `rms_error` is met.
     pub max_samples: usize,
-    /// The most pieces that a search for the Hausdorff distance splits, per triangle of both surfaces and on top of 4096.
-    /// Only where it ends a search, as surfaces crossing in a million slivers make it, the bound is looser than asked for.
+    /// The most pieces and cells that the search for the Hausdorff distance looks at in each direction, per triangle of both
+    /// surfaces and on top of 4096. Where that ends a search, as slivers that all cross each other make it, what is found
+    /// is still a bound, but looser than asked for.
     pub max_splits: usize,
     /// Where samples lie; equal seeds give equal results.
     pub seed: u64,
@@ -67,7 +69,7 @@ pub struct Options {
 
 impl Default for Options {
     /// A bound within 1 % or 5e-7 of the diagonal (half of what is promised for tables, so that nobody's rounding
-    /// matters), root mean squares within 0.5 %, at most a million samples each way, 100 splits per triangle.
+    /// matters), root mean squares within 0.5 %, at most a million samples each way, 100 pieces per triangle.
     fn default() -> Self {
         Self {
             relative: 0.01,
@@ -102,7 +104,7 @@ pub struct Deviation {
     pub there: Spread,
     /// Distances from points of the second surface to the first.
     pub back: Spread,
-    /// How many pieces were split: what the bound has cost.
+    /// How many pieces were split and cells cut: what the bound has cost.
     pub splits: usize,
 }
 
