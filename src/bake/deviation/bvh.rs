@@ -277,3 +277,48 @@ fn cheapest_cut(bins: &[(Bounds, usize); BINS]) -> Option<usize> {
     }
     best.map(|(_, cut)| cut)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn triangles(most: usize) -> impl Strategy<Value = Vec<[DVec3; 3]>> {
+        let number = prop_oneof![3 => -1.0..1.0, 1 => Just(0.5), 1 => -1e-6..1e-6];
+        let point = prop::array::uniform3(number).prop_map(DVec3::from);
+        prop::collection::vec(prop::array::uniform3(point), 1..most)
+    }
+
+    proptest! {
+        #[test]
+        fn the_nearest_is_the_nearest_of_all(
+            triangles in triangles(60), point in prop::array::uniform3(-2.0..2.0), hint in any::<prop::sample::Index>()
+        ) {
+            let (point, (bvh, order)) = (DVec3::from(point), Bvh::new(&triangles));
+            let nearest = bvh.nearest(point, hint.index(triangles.len()) as u32);
+            let all = triangles.iter().map(|&corners| Facet::new(corners).distance2(point));
+            prop_assert_eq!(nearest.distance2, all.fold(f64::INFINITY, f64::min));
+            let found = Facet::new(triangles[order[nearest.triangle as usize] as usize]);
+            prop_assert_eq!(nearest.distance2, found.distance2(point));
+        }
+    }
+
+    #[test]
+    fn rounding_goes_outwards() {
+        for x in [0.1, -0.1, 1.0, 1e-60, -1e-60, 1e39, -1e39, f64::from(f32::MAX)] {
+            assert!(f64::from(round_down(x)) <= x && x <= f64::from(round_up(x)), "{x}");
+        }
+        assert_eq!((round_down(0.5), round_up(0.5)), (0.5, 0.5));
+    }
+
+    #[test]
+    fn equal_triangles_and_long_runs_of_sizes_make_a_tree_that_is_not_too_deep() {
+        let equal = vec![[DVec3::ZERO, DVec3::X, DVec3::Y]; 5000];
+        let growing = (0..250).map(|k| [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p * 2.0_f64.powi(k - 125)));
+        for triangles in [equal, growing.collect()] {
+            let (bvh, order) = Bvh::new(&triangles);
+            assert_eq!(bvh.nodes.len() + 1, order.len());
+            assert_eq!(bvh.nearest(DVec3::new(0.0, 0.0, 2.0), 7).distance2, 4.0);
+        }
+    }
+}

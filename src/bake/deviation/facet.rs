@@ -81,14 +81,14 @@ fn longest_side_first([a, b, c]: [DVec3; 3]) -> [DVec3; 3] {
     }
 }
 
-/// The unit vector at a right angle to `along`, on the side of `side`; any where `side` is parallel.
+/// The unit vector at a right angle to `along`, on the side of `side`; any where `side` is parallel but for rounding.
 ///
-/// Projected twice, as what is left of a needle's side is mostly rounding after the first time
-/// (W. Kahan's "twice is enough", in B. N. Parlett, "The Symmetric Eigenvalue Problem", 1980).
+/// Projected twice, as part of what is left of a needle's side is rounding after the first time. What the second time
+/// takes most of was nothing but rounding ("twice is enough": B. N. Parlett, "The Symmetric Eigenvalue Problem", 1980).
 fn perpendicular(side: DVec3, along: DVec3) -> DVec3 {
     let once = (side - along * side.dot(along)).try_normalize();
-    let twice = once.and_then(|v| (v - along * v.dot(along)).try_normalize());
-    twice.unwrap_or_else(|| along.any_orthonormal_vector())
+    let twice = once.map(|v| v - along * v.dot(along)).filter(|v| v.length_squared() > 0.5);
+    twice.map_or_else(|| along.any_orthonormal_vector(), DVec3::normalize)
 }
 
 fn inverse_square(x: f64, y: f64) -> f64 {
@@ -104,4 +104,64 @@ fn square(x: f64) -> f64 {
 fn from_side([x, y]: [f64; 2], end: [f64; 2], inverse: f64) -> f64 {
     let t = ((x * end[0] + y * end[1]) * inverse).clamp(0.0, 1.0);
     square(x - t * end[0]) + square(y - t * end[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn point() -> impl Strategy<Value = DVec3> {
+        prop::array::uniform3(-1.0..1.0_f64).prop_map(DVec3::from)
+    }
+
+    proptest! {
+        /// Seen from over or beside a point of the triangle, with the height that is left to an apex near the base.
+        #[test]
+        fn distance_is_that_to_the_nearest_point_however_thin_the_triangle(
+            a in point(), b in point(), c in point(), p in point(), along in 0.0..1.0_f64, thin in 0.0..17.0_f64, weights in point()
+        ) {
+            let foot = a.lerp(b, along);
+            let corners = [a, b, foot.lerp(c, 10.0_f64.powf(-thin))];
+            let facet = Facet::new(corners);
+            let distance = facet.distance2(p).sqrt();
+            let weights = (weights.abs() + 1e-9) / (weights.abs() + 1e-9).element_sum();
+            let within = corners[0] * weights.x + corners[1] * weights.y + corners[2] * weights.z;
+            prop_assert!(facet.distance2(within).sqrt() < 2e-15);
+            prop_assert!(distance <= p.distance(within) + 2e-15);
+            // No point of a triangle is farther from its longest side than its height is long.
+            let base = (0..200).map(|k| p.distance(a.lerp(b, f64::from(k) / 199.0))).fold(f64::INFINITY, f64::min);
+            prop_assert!(distance >= base - 2e-2 - c.distance(foot) * 10.0_f64.powf(-thin));
+        }
+
+        #[test]
+        fn corners_in_any_order_make_the_same_triangle(a in point(), b in point(), c in point(), p in point()) {
+            let all = [[a, b, c], [b, c, a], [c, a, b], [a, c, b]].map(|corners| Facet::new(corners).distance2(p));
+            prop_assert!(all.iter().all(|d| (d.sqrt() - all[0].sqrt()).abs() < 1e-14));
+        }
+    }
+
+    /// What is left of a side that is all but parallel is rounding, and may point along the base.
+    #[test]
+    fn a_segment_in_any_direction_has_axes_at_a_right_angle() {
+        for k in 0..2000 {
+            let t = f64::from(k);
+            let (a, b) = (DVec3::new(t.sin(), 0.1, t.cos()), DVec3::new(0.3, (1.7 * t).sin(), 0.5));
+            for corners in [[a, b, b], [a, b, a], [a, a, b], [a, b, a.lerp(b, 0.3)]] {
+                let (_, [along, across]) = Facet::new(corners).frame();
+                assert!(
+                    along.dot(across).abs() < 1e-15 && (across.length() - 1.0).abs() < 1e-15,
+                    "{corners:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_frame_keeps_the_turn() {
+        let facet = Facet::new([DVec3::ZERO, DVec3::Y, DVec3::X * 3.0]);
+        let (_, [along, across]) = facet.frame();
+        assert!(along.cross(across).distance(DVec3::NEG_Z) < 1e-15);
+        assert!((facet.area() - 1.5).abs() < 1e-15 && facet.slenderness() > 0.0);
+    }
 }
