@@ -18,8 +18,8 @@ const SLACK: f64 = 1e-11;
 /// Pieces that were cut so often are left as they are.
 const MOST_CUTS: u16 = 400;
 
-/// Splits that every search may take, however small the surfaces.
-const FREE_SPLITS: usize = 4096;
+/// A search may take as many splits as one of so many triangles, however small the surfaces.
+const FEW_TRIANGLES: usize = 1 << 16;
 
 /// What is known of the Hausdorff distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,8 +48,8 @@ impl Extent {
 pub(super) fn bound(from: &Shape, to: &Shape, known: Extent, options: &Options) -> Extent {
     let mut search = Search::new(from, to, known, options);
     search.visit_vertices();
-    let triangles = from.corners.len() + to.corners.len();
-    let most_splits = options.max_splits.saturating_mul(triangles).saturating_add(FREE_SPLITS);
+    let triangles = (from.corners.len() + to.corners.len()).max(FEW_TRIANGLES);
+    let most_splits = options.max_splits.saturating_mul(triangles);
     search.cover_triangles(most_splits);
     search.refine(most_splits);
     search.extent(known)
