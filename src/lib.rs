@@ -87,7 +87,7 @@
 //! | `ecs` | components and synchronisation with hecs (feature `hecs`) |
 //! | *rooms* | |
 //! | `files` | scenes, camera paths and instances from disk (feature `files`) |
-//! | `bake` | meshes from files, and what is made of them before anything is drawn (feature `bake`) |
+//! | `bake` | from meshes to LOD tables: meshes from files, and how true what is made of them is (feature `bake`) |
 //! | `sim` | simulated machines, trials, metrics and scenes made from a seed (feature `sim`) |
 //!
 //! # Features

@@ -8,7 +8,9 @@
 //! | [`weld`] | positions that are the same become one |
 //! | [`repair`] | what is wrong with a mesh, and what can be put right safely |
 //! | [`finding`] | what readers and repair have to report |
+//! | [`deviation`] | how far two surfaces are apart, as a bound that is proved |
 
+pub mod deviation;
 pub mod finding;
 pub mod mesh;
 pub mod read;
