@@ -5,9 +5,9 @@
 //! cargo bench --bench knapsack
 //! ```
 //!
-//! Ids are `greedy/N`, `capped/N` (100 000 steps) and `exact/N` for N classes of two to six levels each, triangles halving or better from one to
-//! the next and benefits of a size at random times 1 − ½ / triangles; the budget is two fifths of the way from the
-//! least to the most.
+//! Ids are `greedy/N`, `capped/N` (100 000 steps) and `exact/N` for N classes of two to six levels each, triangles
+//! halving or better from one to the next and benefits of a size at random times 1 − ½ / triangles; the budget is two
+//! fifths of the way from the least to the most.
 
 use std::hint::black_box;
 use std::time::Duration;

@@ -4,8 +4,8 @@
 //! cargo run --example custom_selector --no-default-features
 //! ```
 //!
-//! The rule: largest object first, each as fine as still fits. It keeps the budget, and spends it badly: near objects take
-//! refinements that hardly show, far ones get nothing.
+//! The rule: largest object first, each as fine as still fits. It keeps the budget, and spends it badly: near objects
+//! take refinements that hardly show, far ones get nothing.
 
 use std::error::Error;
 

@@ -1,11 +1,12 @@
-//! The smallest embedding: no ECS, a camera that flies through a wood, and a machine that is slower than the model says.
+//! The smallest embedding: no ECS, a camera that flies through a wood, and a machine that is slower than the model
+//! says.
 //!
 //! ```text
 //! cargo run --example embed --no-default-features
 //! ```
 //!
-//! The engine's side of the contract is three things: hand over cameras and a budget, act on the changes, and say how long
-//! frames took. Here "acting" is keeping a draw list, and the time comes from a formula.
+//! The engine's side of the contract is three things: hand over cameras and a budget, act on the changes, and say how
+//! long frames took. Here "acting" is keeping a draw list, and the time comes from a formula.
 
 use std::collections::BTreeMap;
 use std::error::Error;

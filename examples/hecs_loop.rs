@@ -4,8 +4,8 @@
 //! cargo run --example hecs_loop
 //! ```
 //!
-//! The world stays the engine's. `Bridge::sync` carries what has changed into the store before the frame, `Bridge::write_back`
-//! carries the levels back after it.
+//! The world stays the engine's. `Bridge::sync` carries what has changed into the store before the frame,
+//! `Bridge::write_back` carries the levels back after it.
 
 use std::error::Error;
 

@@ -4,8 +4,8 @@
 //! cargo run --example knapsack_alone --no-default-features
 //! ```
 //!
-//! Any choice of "one of several, cost against benefit, within one budget" has this form: shadow map sizes, physics rates,
-//! splat counts. The feedback stage can be had alone as well, and closes the loop here.
+//! Any choice of "one of several, cost against benefit, within one budget" has this form: shadow map sizes, physics
+//! rates, splat counts. The feedback stage can be had alone as well, and closes the loop here.
 
 use std::error::Error;
 

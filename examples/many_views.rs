@@ -4,8 +4,8 @@
 //! cargo run --example many_views --no-default-features
 //! ```
 //!
-//! Views of one group show the same level of every object: the eyes must not disagree. Groups choose apart, but all of them
-//! compete for the same microseconds under one multiplier, so that the budget goes where it shows most.
+//! Views of one group show the same level of every object: the eyes must not disagree. Groups choose apart, but all of
+//! them compete for the same microseconds under one multiplier, so that the budget goes where it shows most.
 
 use std::error::Error;
 use std::f32::consts::{FRAC_PI_2, PI};

@@ -1,7 +1,7 @@
 //! A hecs [`World`] as the source of [`Objects`] and the sink of levels.
 //!
-//! The world is never the hot store: [`Bridge::sync`] carries what has changed into [`Objects`], the runtime works there,
-//! and [`Bridge::write_back`] carries what has changed on the screen into components.
+//! The world is never the hot store: [`Bridge::sync`] carries what has changed into [`Objects`], the runtime works
+//! there, and [`Bridge::write_back`] carries what has changed on the screen into components.
 //!
 //! ```
 //! # use lod_budget::{bounds::Sphere, ecs::*, runtime::*, scene::*, select::Predictive, table::*, view::View};
@@ -29,9 +29,9 @@
 //! [`Objects`] from there costs nothing for what stands still.
 //!
 //! # Identity
-//! An object is known by the [`ObjectId`] that the caller puts into its component, never by its entity. Objects enter the
-//! store in the order of their ids, so that neither slots nor decisions depend on the order of entities. An id may pass
-//! from one entity to another between two calls; the object then lives on.
+//! An object is known by the [`ObjectId`] that the caller puts into its component, never by its entity. Objects enter
+//! the store in the order of their ids, so that neither slots nor decisions depend on the order of entities. An id may
+//! pass from one entity to another between two calls; the object then lives on.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -136,9 +136,9 @@ type Source<'a> = (Entity, &'a LodObject, &'a LodBounds, Option<&'a LodSettings>
 /// Carries a [`World`] into [`Objects`] and levels back, and remembers what it has carried.
 ///
 /// It keeps some 80 bytes per entity index and nothing in the world itself. Several bridges may read the same world,
-/// each into a store of its own, and several worlds may share a store as long as their ids differ. What a bridge has put
-/// into the store is to be changed through its components alone. After [`World::clear`], which numbers entities anew,
-/// call [`Bridge::clear`].
+/// each into a store of its own, and several worlds may share a store as long as their ids differ. What a bridge has
+/// put into the store is to be changed through its components alone. After [`World::clear`], which numbers entities
+/// anew, call [`Bridge::clear`].
 #[derive(Default)]
 pub struct Bridge {
     /// By the entity's index in the world.
@@ -192,9 +192,9 @@ impl Bridge {
         Self::default()
     }
 
-    /// Makes the store agree with the world: entities that have come into being are inserted, those that are gone or lost
-    /// a component removed, moved and changed ones updated. Looks at every entity, at some 6 ns for each that stands
-    /// still; allocates nothing once it has seen as many entities and changes before.
+    /// Makes the store agree with the world: entities that have come into being are inserted, those that are gone or
+    /// lost a component removed, moved and changed ones updated. Looks at every entity, at some 6 ns for each that
+    /// stands still; allocates nothing once it has seen as many entities and changes before.
     ///
     /// # Errors
     /// Entities that break a rule: an id that another entity has, an unknown table, a setting out of its range. They
@@ -208,8 +208,8 @@ impl Bridge {
     }
 
     /// As [`Bridge::sync`], but looks only at `touched`: for engines that know which entities were spawned, despawned,
-    /// moved or changed since the last call. Some 50 to 100 ns for each of them, nothing for the others. Entities may be
-    /// listed twice; one that is left out stays as it was until it is listed or a full sync comes by.
+    /// moved or changed since the last call. Some 50 to 100 ns for each of them, nothing for the others. Entities may
+    /// be listed twice; one that is left out stays as it was until it is listed or a full sync comes by.
     ///
     /// # Errors
     /// As [`Bridge::sync`].
@@ -433,11 +433,11 @@ impl Bridge {
         self.sinks.iter_mut().for_each(|sink| sink.unsettled.push(entity));
     }
 
-    /// Writes what is shown to view group `GROUP` into [`LodShown`]: once after each [`Runtime::frame`], and after the sync
-    /// before it. Returns how many components it wrote.
+    /// Writes what is shown to view group `GROUP` into [`LodShown`]: once after each [`Runtime::frame`], and after the
+    /// sync before it. Returns how many components it wrote.
     ///
-    /// Touches only what has changed with the frame or is in transition. After frames that were not written (the group's
-    /// first write, a gap, a reset or restored runtime) it looks at everything once.
+    /// Touches only what has changed with the frame or is in transition. After frames that were not written (the
+    /// group's first write, a gap, a reset or restored runtime) it looks at everything once.
     ///
     /// An entity without the component gets it when it is first shown, which moves it to another archetype, once; spawn
     /// entities with `LodShown::<GROUP>::default()` to avoid that. It keeps the component, which says

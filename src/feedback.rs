@@ -1,10 +1,10 @@
 //! Feedback: from measured frame times to the next budget and to a cost model that fits the machine.
 //!
 //! Two estimators look at the same measurements. A scalar *correction*, measured ÷ predicted time, follows fast
-//! whatever the model leaves out: the assets in view, heat, another program. A ridge *refit* of the coefficients towards
-//! their prior learns slowly what kind of machine this is, so that the prediction holds when the scene changes. Both are
-//! Kalman filters; what they say is applied only when it leaves a dead band, so that with a still camera noise moves
-//! neither the budget nor a coefficient.
+//! whatever the model leaves out: the assets in view, heat, another program. A ridge *refit* of the coefficients
+//! towards their prior learns slowly what kind of machine this is, so that the prediction holds when the scene changes.
+//! Both are Kalman filters; what they say is applied only when it leaves a dead band, so that with a still camera noise
+//! moves neither the budget nor a coefficient.
 //!
 //! Measurements are matched to their frames by id. A single one far off is a hitch and ignored; several in a row are
 //! news. Under vertical synchronisation a time is a bound, not a measurement, and is used as such: nothing probes for
@@ -200,8 +200,8 @@ impl Feedback {
         }
     }
 
-    /// Takes the refitted coefficients into use when they price this frame's drivers differently enough, one by one. The
-    /// correction moves the other way, so that the price of this frame stays.
+    /// Takes the refitted coefficients into use when they price this frame's drivers differently enough, one by one.
+    /// The correction moves the other way, so that the price of this frame stays.
     fn adopt_refit(&mut self, drivers: &Drivers) {
         let (old, new) = (self.model.coefficients(), self.refit.coefficients());
         let total = price(&old, drivers);
@@ -316,8 +316,8 @@ impl Correction {
 /// Bayesian linear regression of measured time on drivers: multipliers of the prior's coefficients, their mean at first
 /// 1. The prior acts as the ridge.
 ///
-/// Source: A. Hoerl and R. Kennard, "Ridge Regression: Biased Estimation for Nonorthogonal Problems", 1970; in recursive
-/// form R. E. Kalman, "A New Approach to Linear Filtering and Prediction Problems", 1960.
+/// Source: A. Hoerl and R. Kennard, "Ridge Regression: Biased Estimation for Nonorthogonal Problems", 1970; in
+/// recursive form R. E. Kalman, "A New Approach to Linear Filtering and Prediction Problems", 1960.
 #[derive(Clone, Copy, Debug)]
 struct Refit {
     prior: CostModel,

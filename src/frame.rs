@@ -52,9 +52,10 @@ pub struct Candidates {
     pub heaviest: f32,
     /// See [`Candidates::previous`]; [`NEWCOMER`] for an object that has just come into view.
     pub(crate) held: Vec<Level>,
-    /// Where the level that was wanted in the last frame, or what was [chosen](Candidates::deferred) instead, stands among
-    /// the levels of all tables ([`TableRates::index`](crate::rate::TableRates::index)), of a candidate that may choose
-    /// among all levels of its table and counts once. [`NO_PLACE`] for any other, and for one that has just come into view.
+    /// Where the level that was wanted in the last frame, or what was [chosen](Candidates::deferred) instead, stands
+    /// among the levels of all tables ([`TableRates::index`](crate::rate::TableRates::index)), of a candidate that may
+    /// choose among all levels of its table and counts once. [`NO_PLACE`] for any other, and for one that has just come
+    /// into view.
     pub place: Vec<u32>,
     /// How many candidates there are at each place.
     pub census: Vec<u32>,
@@ -93,8 +94,8 @@ pub struct Account {
     /// What is in the leaky bucket that counts refinements: each puts in [`Account::REFINEMENT_DROPS`], each
     /// [`Account::LEAK_MS`] takes one drop away.
     pub drops: u8,
-    /// The level that was wanted before the one that is. Any level where that is not known; then the one that is has been
-    /// wanted for long.
+    /// The level that was wanted before the one that is. Any level where that is not known; then the one that is has
+    /// been wanted for long.
     pub from: Level,
 }
 
@@ -551,8 +552,8 @@ pub struct Certificate {
     pub upper_bound: f64,
     /// (bound − benefit) ÷ (bound − benefit of the minimum choice), of the plain benefit; 0 where that is 0 ÷ 0.
     pub gap: f64,
-    /// The same of the objective with switching prices folded in; under [`Steadiness`](crate::select::Steadiness), of the
-    /// choice that is led to.
+    /// The same of the objective with switching prices folded in; under [`Steadiness`](crate::select::Steadiness), of
+    /// the choice that is led to.
     pub penalised_gap: f64,
     /// The multiplier λ: what a microsecond is worth in px² where the budget ends; 0 when everything fits.
     pub lambda: f64,

@@ -1,9 +1,10 @@
-//! How the loops over columns run: in the widest vectors that the machine has, and on as many threads as they are told to.
+//! How the loops over columns run: in the widest vectors that the machine has, and on as many threads as they are told
+//! to.
 //!
-//! A loop is written once, over fixed arrays of lanes, and compiled once for each width; which one runs is decided when it
-//! runs. The arithmetic is the same: nothing is fused or reordered, so that neither width nor threads change an answer.
-//! This is the one file of the crate with unsafe code: calls of functions that are compiled for more than the machine is
-//! sure to have, made once it is known to have it.
+//! A loop is written once, over fixed arrays of lanes, and compiled once for each width; which one runs is decided when
+//! it runs. The arithmetic is the same: nothing is fused or reordered, so that neither width nor threads change an
+//! answer. This is the one file of the crate with unsafe code: calls of functions that are compiled for more than the
+//! machine is sure to have, made once it is known to have it.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
@@ -59,8 +60,8 @@ pub fn width() -> Width {
     }
 }
 
-/// A loop without branches on its data. [`Kernel::run`] and all that it calls must be `#[inline(always)]` or small, or they
-/// are compiled for narrow vectors alone.
+/// A loop without branches on its data. [`Kernel::run`] and all that it calls must be `#[inline(always)]` or small, or
+/// they are compiled for narrow vectors alone.
 pub(crate) trait Kernel: Sized {
     /// What it adds up.
     type Sum;
@@ -98,7 +99,8 @@ pub(crate) fn run<K: Kernel>(kernel: K) -> K::Sum {
 /// Fewer objects are not worth another thread.
 const PART: usize = 1 << 14;
 
-/// Runs a kernel on so many threads of the pool that the caller is in; on the caller's alone without the feature `rayon`.
+/// Runs a kernel on so many threads of the pool that the caller is in; on the caller's alone without the feature
+/// `rayon`.
 pub(crate) fn run_on<K: Divisible>(threads: usize, kernel: K) -> K::Sum {
     if threads < 2 || kernel.len() < 2 * PART {
         return run(kernel);

@@ -24,9 +24,9 @@
 //!                                                                           ▲                            │
 //!                                                                           └────── measured times ◄─────┘
 //! ```
-//! The loop closes only through what [`Runtime`] keeps from one frame to the next. Every stage is also a public function
-//! or type of its own over borrowed slices: take [`Runtime`] to have a frame in one call, take the stages where an engine
-//! culls by itself, runs them at other times, or wants only one of them.
+//! The loop closes only through what [`Runtime`] keeps from one frame to the next. Every stage is also a public
+//! function or type of its own over borrowed slices: take [`Runtime`] to have a frame in one call, take the stages
+//! where an engine culls by itself, runs them at other times, or wants only one of them.
 //!
 //! # Example
 //! ```
@@ -57,9 +57,9 @@
 //! them the budget is kept as far as the [`CostModel`] is right.
 //!
 //! # When not to use it
-//! - **One kind of object, one factor for all.** Where all objects share one accuracy curve, the best choice nearly is one
-//!   threshold on size, and a global scale that is tuned perfectly for the scene and the machine does nearly as well.
-//!   What is bought here is that nobody has to tune it, and that it holds when the scene or the machine changes.
+//! - **One kind of object, one factor for all.** Where all objects share one accuracy curve, the best choice nearly is
+//!   one threshold on size, and a global scale that is tuned perfectly for the scene and the machine does nearly as
+//!   well. What is bought here is that nobody has to tune it, and that it holds when the scene or the machine changes.
 //! - **Time that does not come from objects.** Only what follows from draw calls, vertices, triangles and projected
 //!   area can be steered by levels; post-processing and simulation cannot.
 //! - **One huge mesh.** Terrain and cluster hierarchies need a cut through a tree, whose parts depend on each other.

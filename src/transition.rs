@@ -109,8 +109,8 @@ impl Shown {
     }
 }
 
-/// Decides what happens to an object whose choice has become `to`: a transition while `reserve_us` lasts, which it draws
-/// from; beyond that a coarsening switches hard and a refinement waits.
+/// Decides what happens to an object whose choice has become `to`: a transition while `reserve_us` lasts, which it
+/// draws from; beyond that a coarsening switches hard and a refinement waits.
 pub fn follow(
     shown: Shown,
     to: Level,

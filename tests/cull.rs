@@ -122,8 +122,8 @@ fn is_visible(object: &Object, lens: &Lens, question: &Question) -> bool {
         && !is_passed_over(object, lens, question)
 }
 
-/// Worth, by the documentation, not quite λ: area · gain · slope ÷ multiplier, where the eye is not inside. The tables of
-/// these tests have one level each.
+/// Worth, by the documentation, not quite λ: area · gain · slope ÷ multiplier, where the eye is not inside. The tables
+/// of these tests have one level each.
 fn is_passed_over(object: &Object, lens: &Lens, question: &Question) -> bool {
     let Object { bounds, settings, table, .. } = object;
     let Some(&slope) = question.best_slope.get(usize::from(table.0)) else { return false };

@@ -1,4 +1,5 @@
-//! A hecs world as source and sink: the same decisions as through `Objects` directly, and nothing done for what stands still.
+//! A hecs world as source and sink: the same decisions as through `Objects` directly, and nothing done for what stands
+//! still.
 #![cfg(feature = "hecs")]
 
 use std::alloc::{GlobalAlloc, Layout, System};

@@ -127,8 +127,8 @@ proptest! {
     }
 }
 
-/// A small generator, so that the instances never change (G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number
-/// generators", 2014).
+/// A small generator, so that the instances never change (G. L. Steele, D. Lea, C. H. Flood, "Fast splittable
+/// pseudorandom number generators", 2014).
 struct SplitMix(u64);
 
 impl SplitMix {

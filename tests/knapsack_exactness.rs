@@ -1,5 +1,5 @@
-//! A hundred thousand tiny knapsacks against every choice there is, the greedy against a twin without any cleverness, cuts at every
-//! step, and the gaps that are claimed.
+//! A hundred thousand tiny knapsacks against every choice there is, the greedy against a twin without any cleverness,
+//! cuts at every step, and the gaps that are claimed.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -190,7 +190,8 @@ impl<'a> Twin<'a> {
         self.whole.classes.iter().map(cheapest).collect()
     }
 
-    /// From an item of a class to the one that the steepest step leads to, of equally steep ones the nearest, then the first.
+    /// From an item of a class to the one that the steepest step leads to, of equally steep ones the nearest, then the
+    /// first.
     fn next(&self, class: usize, from: u32) -> Option<u32> {
         let items = &self.whole.classes[class];
         let step = |to: u32| difference(items[from as usize], items[to as usize]);
@@ -200,8 +201,8 @@ impl<'a> Twin<'a> {
         onward.min_by(order)
     }
 
-    /// Takes steps from `choice`, always the steepest of those that classes may take next, in passing over what does not fit. Returns
-    /// the first that did not.
+    /// Takes steps from `choice`, always the steepest of those that classes may take next, in passing over what does
+    /// not fit. Returns the first that did not.
     fn climb(&self, choice: &mut [u32], mut closed: Vec<bool>) -> Option<(usize, u32)> {
         let mut critical = None;
         loop {

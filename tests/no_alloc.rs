@@ -98,7 +98,8 @@ fn fly(runtime: &mut Runtime, objects: &mut Objects, budget_us: f64) -> usize {
     changes
 }
 
-/// A world in motion: every frame some objects move, one goes and comes back elsewhere, and now and then the camera jumps.
+/// A world in motion: every frame some objects move, one goes and comes back elsewhere, and now and then the camera
+/// jumps.
 fn stir(objects: &mut Objects, n: usize) {
     for k in 0..20 {
         let id = ObjectId((n * 7 + k * 31) as u64 % OBJECTS);

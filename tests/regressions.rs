@@ -1,9 +1,10 @@
 //! What broke elsewhere, one test each, named after the failure and the system it was reported for.
 //!
-//! Not tested here, because the crate does not have the part that broke, or shows it in another place: roots evicted and
-//! load loops at a byte cap (nothing here decides what is loaded; that an evicted level is not shown is tested), the RMS
-//! error that under-reports deviation (the bake side measures), frame generation (no presented frame is counted twice:
-//! times are matched by id, see `measurements_of_unknown_frames_are_passed_over`), allocation (`tests/no_alloc.rs`).
+//! Not tested here, because the crate does not have the part that broke, or shows it in another place: roots evicted
+//! and load loops at a byte cap (nothing here decides what is loaded; that an evicted level is not shown is tested),
+//! the RMS error that under-reports deviation (the bake side measures), frame generation (no presented frame is counted
+//! twice: times are matched by id, see `measurements_of_unknown_frames_are_passed_over`), allocation
+//! (`tests/no_alloc.rs`).
 
 use std::collections::VecDeque;
 
@@ -292,7 +293,8 @@ fn threshold(mut from: f64, mut to: f64) -> f64 {
     to
 }
 
-/// How often levels switch in five seconds of a camera that shakes by ±1 mm and ±0.01° around `z`, after a second of it.
+/// How often levels switch in five seconds of a camera that shakes by ±1 mm and ±0.01° around `z`, after a second of
+/// it.
 fn switches_in_the_hand(selector: Predictive, z: f64) -> usize {
     let (mut runtime, mut objects, mut dice) = (runtime(selector), field(), Machine::usual());
     let mut shaken = || {

@@ -167,8 +167,8 @@ impl<'a> Textbook<'a> {
         positions.iter().zip(&self.hulls).map(|(&p, hull)| hull[p].item).collect()
     }
 
-    /// The answers that the solver may give, if the gap that it certifies is the right one: two where the greedy and its
-    /// rival are worth the same.
+    /// The answers that the solver may give, if the gap that it certifies is the right one: two where the greedy and
+    /// its rival are worth the same.
     fn answers(&self, budget: u64, outcome: &Outcome) -> Vec<Vec<u8>> {
         let plain = self.greedy(budget, None);
         let value = self.priced(&plain.positions);
@@ -328,8 +328,8 @@ proptest! {
     }
 }
 
-/// A crowd: profiles, and per class the profile, the weight and the price of switching. What each class holds follows from
-/// call to call; an odd one holds nothing that is counted, and one of its own has the items and no profile.
+/// A crowd: profiles, and per class the profile, the weight and the price of switching. What each class holds follows
+/// from call to call; an odd one holds nothing that is counted, and one of its own has the items and no profile.
 #[derive(Clone, Debug)]
 struct Scene {
     profiles: Vec<Vec<ProfileItem>>,

@@ -2,9 +2,10 @@
 //!
 //! `#[path = "knapsack_exactness/mod.rs"] mod knapsack_exactness;` includes it.
 //!
-//! Instances are classes of five levels whose costs shrink by a random factor from each to the next and whose benefits shrink by a power of it,
-//! so that nearly all levels are on the hull and slopes spread over decades; the budget lies anywhere between 5 % and 90 % of the way from
-//! the least cost to the most. Amounts are multiples of 2⁻³⁰, so that sums of a few are exact.
+//! Instances are classes of five levels whose costs shrink by a random factor from each to the next and whose benefits
+//! shrink by a power of it, so that nearly all levels are on the hull and slopes spread over decades; the budget lies
+//! anywhere between 5 % and 90 % of the way from the least cost to the most. Amounts are multiples of 2⁻³⁰, so that
+//! sums of a few are exact.
 
 use lod_budget::knapsack::{Instance, Item, Solution, capped, greedy};
 use rand::{RngExt, SeedableRng};
@@ -13,8 +14,8 @@ use rand_pcg::Pcg64;
 /// Steps within which a proof counts for [`proved`].
 pub const CAP_STEPS: u64 = 100_000;
 
-/// The worst certified gap of [`greedy`] over instances of `classes` classes, one per seed from 0: (bound − benefit) ÷ bound,
-/// the whole benefit and not only that above the cheapest choice.
+/// The worst certified gap of [`greedy`] over instances of `classes` classes, one per seed from 0: (bound − benefit) ÷
+/// bound, the whole benefit and not only that above the cheapest choice.
 pub fn gap(classes: usize, seeds: u64) -> f64 {
     solved(classes, seeds, greedy).filter_map(|solution| solution.gap).fold(0.0, f64::max)
 }
@@ -68,8 +69,8 @@ fn on_grid(amount: f64) -> f64 {
 
 const GRID: f64 = (1u64 << 30) as f64;
 
-/// The best benefit within the budget among all choices. Those of half of the classes are listed by cost, each with the best benefit so far; the
-/// other half's look up what they leave.
+/// The best benefit within the budget among all choices. Those of half of the classes are listed by cost, each with the
+/// best benefit so far; the other half's look up what they leave.
 fn exhaustive(instance: &Instance) -> f64 {
     let classes: Vec<&[Item]> = instance.classes().collect();
     let (first, second) = classes.split_at(classes.len() / 2);

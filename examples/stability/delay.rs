@@ -1,8 +1,8 @@
 //! How long what is wanted waits until it is shown.
 //!
-//! The optimum of a frame *wants* a level of an object while it has that level or a finer one. A want that arises while the
-//! object is held coarser waits until it is held so fine. Wants that last less than a second are no delays: to show them
-//! would be a reversal. Those that last a second count until they are shown, or to their end if they never are.
+//! The optimum of a frame *wants* a level of an object while it has that level or a finer one. A want that arises while
+//! the object is held coarser waits until it is held so fine. Wants that last less than a second are no delays: to show
+//! them would be a reversal. Those that last a second count until they are shown, or to their end if they never are.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};

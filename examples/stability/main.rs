@@ -5,8 +5,8 @@
 //! cargo run --release --features sim --example stability -- SCENE PATH [LEVELS]
 //! ```
 //!
-//! Without arguments it takes the bundled scenes and four motions made from their paths. With them it takes a scene file
-//! (JSON, GLB, glTF) and a camera path (CSV, TUM) as they are; `LEVELS` gives every mesh without levels so many.
+//! Without arguments it takes the bundled scenes and four motions made from their paths. With them it takes a scene
+//! file (JSON, GLB, glTF) and a camera path (CSV, TUM) as they are; `LEVELS` gives every mesh without levels so many.
 //! Prints Markdown. What the columns mean is in docs/stability.md.
 
 mod delay;

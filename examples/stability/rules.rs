@@ -40,8 +40,8 @@ fn bucket() -> Steadiness {
     Steadiness { turn: 1.0, margin: 1.0, content: 0.0, spare: 0.0, burst: 1, ..at_once }
 }
 
-/// The textbook's greedy: all steps of all hulls by slope, and what to do at the first that does not fit: stop, or leave
-/// out that object's further steps and go on.
+/// The textbook's greedy: all steps of all hulls by slope, and what to do at the first that does not fit: stop, or
+/// leave out that object's further steps and go on.
 #[derive(Clone)]
 struct InOrder {
     goes_on: bool,

@@ -2,8 +2,8 @@
 //!
 //! An object is *visible* when it is live (not hidden, its bound finite), its sphere passes
 //! [`Frustum::sees`](crate::view::Frustum::sees), it is no farther from the eye than its draw distance, and, where
-//! [`CullOptions::min_size_px`] asks for it, large enough on the screen. A [`ValueFloor`] passes over what the selection
-//! would leave out anyway. Two ways to the same answer, bit for bit:
+//! [`CullOptions::min_size_px`] asks for it, large enough on the screen. A [`ValueFloor`] passes over what the
+//! selection would leave out anyway. Two ways to the same answer, bit for bit:
 //!
 //! - [`linear`] tests every object. It needs nothing kept and is the oracle of the tests.
 //! - [`BlockTree`] keeps boxes over the blocks and passes over what is wholly in or out of view. It has to be
@@ -21,18 +21,18 @@
 //! | 100 000 | 45 | 11 | 13 |
 //! | 1 000 000 | 220 | 54 | 48 |
 //!
-//! The ratios are those of an earlier tree; today's takes about half its time. At a million objects and with cold caches
-//! it takes a twelfth (2 % in view) to a third (20 %) of the time of reading 16 bytes per object, and a box query on
-//! obvhs' own hierarchy takes 80 times as long or longer. With the feature `bvh` the
-//! objects are arranged by a hierarchy that obvhs builds; without it along a Morton curve, which takes about half as long
-//! to arrange and tests up to a fifth more blocks.
+//! The ratios are those of an earlier tree; today's takes about half its time. At a million objects and with cold
+//! caches it takes a twelfth (2 % in view) to a third (20 %) of the time of reading 16 bytes per object, and a box
+//! query on obvhs' own hierarchy takes 80 times as long or longer. With the feature `bvh` the objects are arranged by a
+//! hierarchy that obvhs builds; without it along a Morton curve, which takes about half as long to arrange and tests up
+//! to a fifth more blocks.
 //!
-//! Objects that may be left out for their worth are arranged by classes of it, and by place within a class: a floor that
-//! leaves 90 000 of a million objects then tests 30 000 one by one. Culling them by view alone takes twice as long, so
-//! that all other objects are arranged by place alone.
+//! Objects that may be left out for their worth are arranged by classes of it, and by place within a class: a floor
+//! that leaves 90 000 of a million objects then tests 30 000 one by one. Culling them by view alone takes twice as
+//! long, so that all other objects are arranged by place alone.
 //!
-//! Where objects move, the order is repaired a thousand objects or two at a time. With a million objects of which one in
-//! a hundred moves, an update takes 4 ms, of which repairs are half a millisecond; with all of them in motion 6 to
+//! Where objects move, the order is repaired a thousand objects or two at a time. With a million objects of which one
+//! in a hundred moves, an update takes 4 ms, of which repairs are half a millisecond; with all of them in motion 6 to
 //! 11 ms, and telling the store their new places takes 300.
 //!
 //! The idea of culling whole groups by their bounds is J. Clark's ("Hierarchical geometric models for visible

@@ -82,9 +82,9 @@ fn kind_of(objects: &Objects, slot: u32, slopes: &KeptSlopes) -> Kind {
     }
 }
 
-/// Worths of a class are within a factor of 2 of each other: the radii of equal objects within 1.4. A wider class is worth
-/// its floor in a wider ring around the eye, and all of it in that ring has to be tested; a narrower one has fewer objects
-/// to fill blocks that are near each other.
+/// Worths of a class are within a factor of 2 of each other: the radii of equal objects within 1.4. A wider class is
+/// worth its floor in a wider ring around the eye, and all of it in that ring has to be tested; a narrower one has
+/// fewer objects to fill blocks that are near each other.
 fn class_of(worth: f64) -> i16 {
     (worth.to_bits() >> 52) as i16 - 1023
 }

@@ -53,8 +53,8 @@ pub(super) struct Repairs {
 }
 
 impl BlockTree {
-    /// Lays the windows that have suffered most out anew; `refitted` blocks were renewed in this update. Returns how many
-    /// objects it moved. The tree has to be refitted and [settled](BlockTree::settle_repairs) afterwards.
+    /// Lays the windows that have suffered most out anew; `refitted` blocks were renewed in this update. Returns how
+    /// many objects it moved. The tree has to be refitted and [settled](BlockTree::settle_repairs) afterwards.
     pub(super) fn repair(&mut self, objects: &mut Objects, refitted: usize) -> usize {
         let mut repairs = std::mem::take(&mut self.repairs);
         repairs.rank(self);

@@ -32,9 +32,9 @@ impl BlockTree {
     /// [`BlockTree::cull`] that passes over what is worth too little, subtree by subtree: the answer of
     /// [`linear_above`].
     ///
-    /// Cost: that of [`BlockTree::cull`], less what is passed over, plus a nanosecond per slope. Subtrees are passed over
-    /// by the slopes that the tree was [told](BlockTree::expect_slopes) to expect; the farther the floor's are from
-    /// those, the fewer.
+    /// Cost: that of [`BlockTree::cull`], less what is passed over, plus a nanosecond per slope. Subtrees are passed
+    /// over by the slopes that the tree was [told](BlockTree::expect_slopes) to expect; the farther the floor's are
+    /// from those, the fewer.
     pub fn cull_above(
         &self,
         objects: &Objects,

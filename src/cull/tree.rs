@@ -109,9 +109,9 @@ impl BlockTree {
     /// objects arranged so that near ones share a block.
     ///
     /// The first update of all but tiny stores arranges all objects, and so does one of a store that has doubled since
-    /// or has become half empty: about 1 µs per object, as [`BlockTree::rearrange`]. All others repair the order where it
-    /// has suffered most, a thousand objects or two at a time: about a millisecond, and more only where so many blocks
-    /// changed that renewing their boxes takes four times as long.
+    /// or has become half empty: about 1 µs per object, as [`BlockTree::rearrange`]. All others repair the order where
+    /// it has suffered most, a thousand objects or two at a time: about a millisecond, and more only where so many
+    /// blocks changed that renewing their boxes takes four times as long.
     ///
     /// Cost otherwise: nothing when nothing changed, else one look at every block's revision, and 0.1 to 0.2 µs per
     /// changed block. Nothing is allocated but for blocks that are new, and while arranging all.
@@ -145,8 +145,8 @@ impl BlockTree {
         UpdateReport { blocks_refitted, objects_repaired: 0, reordered: true }
     }
 
-    /// Tells the tree which slopes floors will have: [`ValueFloor::best_slope`](super::ValueFloor). Their common scale is
-    /// of no matter, only how they compare; a tree that is told nothing assumes that all tables are alike. No answer
+    /// Tells the tree which slopes floors will have: [`ValueFloor::best_slope`](super::ValueFloor). Their common scale
+    /// is of no matter, only how they compare; a tree that is told nothing assumes that all tables are alike. No answer
     /// depends on it, only how much is passed over untested. To be called whenever slopes change.
     ///
     /// Cost: a nanosecond per table. Where two have come to compare differently by half, the next updates renew what is

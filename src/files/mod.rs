@@ -1,5 +1,5 @@
-//! What comes from disk: scenes, camera paths, knapsacks. Readers refuse what is malformed with an error that names the file,
-//! the object and the rule it breaks; nothing is half-read, and nothing half-written is left behind.
+//! What comes from disk: scenes, camera paths, knapsacks. Readers refuse what is malformed with an error that names the
+//! file, the object and the rule it breaks; nothing is half-read, and nothing half-written is left behind.
 //!
 //! | to read | call | format |
 //! |---|---|---|

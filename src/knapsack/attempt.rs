@@ -37,8 +37,8 @@ impl<'a, T: Number> Attempt<'a, T> {
         self.choice[class as usize] = item;
     }
 
-    /// Takes every step that starts where its class stands and fits, while the meter lasts; returns the first that did not fit or was
-    /// not looked at.
+    /// Takes every step that starts where its class stands and fits, while the meter lasts; returns the first that did
+    /// not fit or was not looked at.
     ///
     /// A class whose step was skipped never again stands where one of its steps starts: it is blocked.
     pub fn walk(&mut self, steps: &[HullStep], meter: &mut Meter<'_>) -> Option<Edge<T>> {
@@ -72,8 +72,9 @@ impl<'a, T: Number> Attempt<'a, T> {
         if self.totals.benefit > other.totals.benefit { self } else { other }
     }
 
-    /// Exchanges items with slopes near λ where that gains: once for those of the relaxation, where every exchange loses a
-    /// little but what is left over, and once for those of the best attempt so far, where less is left and smaller exchanges help.
+    /// Exchanges items with slopes near λ where that gains: once for those of the relaxation, where every exchange
+    /// loses a little but what is left over, and once for those of the best attempt so far, where less is left and
+    /// smaller exchanges help.
     pub fn repair(
         &mut self,
         relaxation: &Relaxation,

@@ -1,5 +1,5 @@
-//! Exact sums of `f64`: every finite `f64` is an integer times a power of two, so a set of them shares a unit in which sums are
-//! integer sums. `i64` and `i128` carry the usual ranges; [`Wide`] carries every range an `f64` can span.
+//! Exact sums of `f64`: every finite `f64` is an integer times a power of two, so a set of them shares a unit in which
+//! sums are integer sums. `i64` and `i128` carry the usual ranges; [`Wide`] carries every range an `f64` can span.
 
 use std::fmt::Debug;
 use std::ops::{Add, Sub};
@@ -283,7 +283,8 @@ impl<const N: usize> Number for Wide<N> {
         }
         let top = self.words.iter().rposition(|&word| word != 0).unwrap_or(0).max(1);
         let leading = u128::from(self.words[top]) << 64 | u128::from(self.words[top - 1]);
-        // A word of the 128 leading bits may be nearly empty, but 65 of them are not: one more bit stands for all below.
+        // A word of the 128 leading bits may be nearly empty, but 65 of them are not: one more bit stands for all
+        // below.
         let rest = self.words[..top - 1].iter().any(|&word| word != 0);
         let exponent = unit + 64 * (top as i32 - 1);
         if exponent > 1023 {

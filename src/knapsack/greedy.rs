@@ -1,4 +1,5 @@
-//! The textbook solver: the linear relaxation's greedy on convex hulls, with fill and repair, and at least half of the optimum.
+//! The textbook solver: the linear relaxation's greedy on convex hulls, with fill and repair, and at least half of the
+//! optimum.
 
 use super::attempt::Attempt;
 use super::dyadic::{Number, WideSum};
@@ -12,9 +13,11 @@ use super::{Instance, Solution};
 pub struct Effort {
     /// Hull steps looked at and partial choices made by the repair, at most.
     pub steps: u64,
-    /// Items that the repair may exchange for the chosen ones: those whose slopes are nearest to λ. 0 for the textbook's greedy alone.
+    /// Items that the repair may exchange for the chosen ones: those whose slopes are nearest to λ. 0 for the
+    /// textbook's greedy alone.
     pub exchanges: usize,
-    /// Partial choices that each of the repair's two lists may hold. More of them close the gap further, and cost time in proportion.
+    /// Partial choices that each of the repair's two lists may hold. More of them close the gap further, and cost time
+    /// in proportion.
     pub states: usize,
 }
 
@@ -24,7 +27,8 @@ impl Effort {
 }
 
 impl Default for Effort {
-    /// No limit on the steps, and a repair of some ten thousand of them: at a thousand classes nearly as good as the optimum.
+    /// No limit on the steps, and a repair of some ten thousand of them: at a thousand classes nearly as good as the
+    /// optimum.
     fn default() -> Self {
         Self { steps: u64::MAX, exchanges: 64, states: 512 }
     }
@@ -38,25 +42,27 @@ pub fn greedy(instance: &Instance) -> Solution {
 /// Solves by the slopes of the classes' upper hulls, steepest first.
 ///
 /// 1. Items that do not fit even with every other class at its cheapest are dropped, *before* hulls are built.
-/// 2. All classes start at their cheapest item. Hull steps are taken in order of (slope descending, class ascending, cost ascending); a
-///    step that does not fit is skipped, its class takes no later step, and the rest go on.
-/// 3. The first step that did not fit is the critical one. A second attempt takes its item first and then goes through the steps again;
-///    the better attempt is kept, on a tie the first.
-/// 4. What is left of the budget is spent by exchanging a few items with slopes near the critical one, λ, and by taking steps again.
+/// 2. All classes start at their cheapest item. Hull steps are taken in order of (slope descending, class ascending,
+///   cost ascending); a step that does not fit is skipped, its class takes no later step, and the rest go on.
+/// 3. The first step that did not fit is the critical one. A second attempt takes its item first and then goes through
+///   the steps again; the better attempt is kept, on a tie the first.
+/// 4. What is left of the budget is spent by exchanging a few items with slopes near the critical one, λ, and by taking
+///   steps again.
 ///
-/// The benefit is at least half of the optimum: the linear optimum is at most the first attempt up to the critical step plus that step, and each
-/// attempt holds one of the two (Kellerer, Pferschy, Pisinger, *Knapsack Problems*, 2004, ch. 11). The upper bound is that linear optimum,
-/// g(λ). Slopes, sums and fits are exact. O(n log n) for n items: it sorts all of them, so it is not the one for every frame.
+/// The benefit is at least half of the optimum: the linear optimum is at most the first attempt up to the critical step
+/// plus that step, and each attempt holds one of the two (Kellerer, Pferschy, Pisinger, *Knapsack Problems*, 2004, ch.
+/// 11). The upper bound is that linear optimum, g(λ). Slopes, sums and fits are exact. O(n log n) for n items: it sorts
+/// all of them, so it is not the one for every frame.
 ///
-/// Anytime: cut by `effort.steps`, at the same place on every machine, the answer is within the budget wherever any is and its bound
-/// holds; the half is promised once 2 and 3 are through. Finding the cheapest items and the steepest steps is not counted and takes O(n + s log s) for s
-/// steps.
+/// Anytime: cut by `effort.steps`, at the same place on every machine, the answer is within the budget wherever any is
+/// and its bound holds; the half is promised once 2 and 3 are through. Finding the cheapest items and the steepest
+/// steps is not counted and takes O(n + s log s) for s steps.
 pub fn greedy_within(instance: &Instance, effort: Effort) -> Solution {
     quick(instance, effort).solution
 }
 
-/// An answer, and the relaxation that it comes from: `None` where there is nothing left to search, or the effort ended before λ was
-/// known.
+/// An answer, and the relaxation that it comes from: `None` where there is nothing left to search, or the effort ended
+/// before λ was known.
 #[derive(Clone, Debug)]
 pub(super) struct Quick {
     pub solution: Solution,

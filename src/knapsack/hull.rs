@@ -5,12 +5,13 @@ use std::cmp::Ordering;
 use super::Item;
 use super::dyadic::{Number, WideProduct, add_product, decompose};
 
-/// Writes into `hull` the indices of the upper convex hull of `items`, in order of cost, from the cheapest item (of equally cheap
-/// ones the highest benefit, then the lowest index) to the one with the highest benefit.
+/// Writes into `hull` the indices of the upper convex hull of `items`, in order of cost, from the cheapest item (of
+/// equally cheap ones the highest benefit, then the lowest index) to the one with the highest benefit.
 ///
-/// Slopes along the hull never rise; items *on* an edge are kept, so that equal slopes give several small steps instead of a
-/// large one. Items of equal cost and benefit appear once. `hull` is cleared first and is the only scratch. Values must be finite and
-/// not negative. O(n log n), exact ([`compare_slopes`]). Andrew's monotone chain (A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions", 1979).
+/// Slopes along the hull never rise; items *on* an edge are kept, so that equal slopes give several small steps instead
+/// of a large one. Items of equal cost and benefit appear once. `hull` is cleared first and is the only scratch. Values
+/// must be finite and not negative. O(n log n), exact ([`compare_slopes`]). Andrew's monotone chain (A. M. Andrew,
+/// "Another efficient algorithm for convex hulls in two dimensions", 1979).
 pub fn upper_hull(items: &[Item], hull: &mut Vec<u32>) {
     upper_hull_of(items, |_| true, hull);
 }
@@ -70,7 +71,8 @@ pub fn compare_slopes(a: Step, b: Step) -> Ordering {
     let [rise_a, run_a] = differences(a);
     let [rise_b, run_b] = differences(b);
     let (left, right) = (rise_a.high * run_b.high, rise_b.high * run_a.high);
-    // Each product carries three roundings, 1.5 ε relative; 4 ε of the sum is safely more, unless digits fell off the range.
+    // Each product carries three roundings, 1.5 ε relative; 4 ε of the sum is safely more, unless digits fell off the
+    // range.
     let doubt = 4.0 * f64::EPSILON * (left + right);
     let in_range = |product: f64| product.is_finite() && product > 1e-290;
     if in_range(left) && in_range(right) && (left - right).abs() > doubt {

@@ -1,4 +1,5 @@
-//! Instances as JSON: `{"budget": B, "classes": [[[cost, benefit], …], …]}`, optionally with `"format": "lod-knapsack"` and `"version": 1`.
+//! Instances as JSON: `{"budget": B, "classes": [[[cost, benefit], …], …]}`, optionally with `"format": "lod-knapsack"`
+//! and `"version": 1`.
 
 use std::error::Error;
 use std::fmt;
@@ -15,8 +16,8 @@ const VERSION: u64 = 1;
 impl Instance {
     /// Parses one JSON instance and nothing after it.
     ///
-    /// Errors give line and column and, inside `classes`, the class and the item, counted from 0. Unknown or repeated keys are errors. Items
-    /// are checked as they are read, so the first broken one ends the reading.
+    /// Errors give line and column and, inside `classes`, the class and the item, counted from 0. Unknown or repeated
+    /// keys are errors. Items are checked as they are read, so the first broken one ends the reading.
     pub fn from_json(text: &str) -> Result<Self, InstanceJsonError> {
         Self::parse(serde_json::Deserializer::from_str(text))
     }

@@ -1,4 +1,5 @@
-//! The exact books of one instance: its amounts as integers, its budget on the same grid, and solutions with their sums.
+//! The exact books of one instance: its amounts as integers, its budget on the same grid, and solutions with their
+//! sums.
 
 use super::dyadic::{Grid, LOWEST_UNIT, Number, WideSum};
 use super::{Instance, Item, Solution};

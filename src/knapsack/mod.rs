@@ -1,8 +1,8 @@
 //! The multiple-choice knapsack: choose one item of every class, as much benefit as possible within one budget of cost.
 //!
-//! Levels of detail under a frame time are one use; animation rates, shadow resolutions or splat counts are others. Nothing
-//! here knows graphics: an [`Instance`] is a budget and classes of (cost, benefit) items, ragged and in any order, with zero costs,
-//! duplicates and useless items allowed.
+//! Levels of detail under a frame time are one use; animation rates, shadow resolutions or splat counts are others.
+//! Nothing here knows graphics: an [`Instance`] is a budget and classes of (cost, benefit) items, ragged and in any
+//! order, with zero costs, duplicates and useless items allowed.
 //!
 //! | you want | take | cost | promise |
 //! |---|---|---|---|
@@ -12,17 +12,18 @@
 //! | the optimum | [`exact`] | exponential at worst | `optimal` proved, or an honest bound when stopped |
 //! | the pieces | [`upper_hull`], [`compare_slopes`] | O(n log n), O(1) | exact geometry |
 //!
-//! Do not take them where classes constrain each other (trees, residency, several resources), where cost is not additive,
-//! or where each class may stay empty and has no free item: add the item (0, 0) yourself.
+//! Do not take them where classes constrain each other (trees, residency, several resources), where cost is not
+//! additive, or where each class may stay empty and has no free item: add the item (0, 0) yourself.
 //!
 //! # What is exact
-//! Every `f64` is an integer times a power of two. Costs and benefits are summed as integers on the grid their bits share, so a
-//! budget equal to the exact sum of the costs is kept, and one bit less is not. Reported sums are rounded once; bounds are
-//! rounded up. `optimal` means: no choice within the budget has a benefit that, rounded to `f64`, is above the one reported.
+//! Every `f64` is an integer times a power of two. Costs and benefits are summed as integers on the grid their bits
+//! share, so a budget equal to the exact sum of the costs is kept, and one bit less is not. Reported sums are rounded
+//! once; bounds are rounded up. `optimal` means: no choice within the budget has a benefit that, rounded to `f64`, is
+//! above the one reported.
 //!
 //! # Sources
-//! H. Kellerer, U. Pferschy, D. Pisinger, *Knapsack Problems*, 2004, ch. 11 (the problem, the linear relaxation, the half);
-//! P. Sinha, A. A. Zoltners, "The multiple-choice knapsack problem", 1979 (dominance, the relaxation's greedy);
+//! H. Kellerer, U. Pferschy, D. Pisinger, *Knapsack Problems*, 2004, ch. 11 (the problem, the linear relaxation, the
+//! half); P. Sinha, A. A. Zoltners, "The multiple-choice knapsack problem", 1979 (dominance, the relaxation's greedy);
 //! D. Pisinger, "A minimal algorithm for the multiple-choice knapsack problem", 1995 (the expanding core).
 //!
 //! # Example

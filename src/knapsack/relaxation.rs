@@ -38,8 +38,8 @@ impl HullStep {
     }
 }
 
-/// The hull steps of all classes in order: the first `limit` of them and one more. Items that do not fit beside the `cheapest` choice
-/// of all other classes, which costs `least` in all, are left out before hulls are built.
+/// The hull steps of all classes in order: the first `limit` of them and one more. Items that do not fit beside the
+/// `cheapest` choice of all other classes, which costs `least` in all, are left out before hulls are built.
 pub(super) fn sorted_steps<T: Number>(
     ledger: &Ledger<'_, T>,
     cheapest: &[u32],
@@ -98,8 +98,8 @@ impl<T: Number> Edge<T> {
         self.before.cost - ledger.cost(from) + ledger.cost(to) > ledger.budget
     }
 
-    /// The linear relaxation's optimum, rounded up: the steeper steps and, at the slope of this one, what there is room for. Met where there
-    /// is no room: the totals before it are the optimum.
+    /// The linear relaxation's optimum, rounded up: the steeper steps and, at the slope of this one, what there is room
+    /// for. Met where there is no room: the totals before it are the optimum.
     pub fn linear_bound(&self, ledger: &Ledger<'_, T>) -> UpperBound {
         let Step { from, to } = self.step.geometry(ledger);
         let room = ledger.budget - self.before.cost;

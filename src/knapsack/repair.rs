@@ -1,9 +1,10 @@
 //! Repair: what the greedy leaves of the budget is spent by exchanging items that are nearly as good.
 //!
-//! Items with slopes near λ are worth nearly their price, but cost all kinds of amounts. Of k classes that may move there are 2^k combinations
-//! and more, so some leave next to nothing over and lose next to nothing. They are looked for in two lists of partial choices that
-//! meet in the middle (E. Horowitz, S. Sahni, "Computing partitions with applications to the knapsack problem", 1974), built class by
-//! class with dominance and pruned by what they lose: the exact search's first level, cut to a fixed size.
+//! Items with slopes near λ are worth nearly their price, but cost all kinds of amounts. Of k classes that may move
+//! there are 2^k combinations and more, so some leave next to nothing over and lose next to nothing. They are looked
+//! for in two lists of partial choices that meet in the middle (E. Horowitz, S. Sahni, "Computing partitions with
+//! applications to the knapsack problem", 1974), built class by class with dominance and pruned by what they lose: the
+//! exact search's first level, cut to a fixed size.
 //!
 //! Plain data in, plain data out, in integers of any width, so that every greedy can use it.
 
@@ -12,8 +13,9 @@ use super::meter::Meter;
 
 /// Another item for one class, relative to the one that the class has.
 ///
-/// A step of a hull that may be taken, of slope s, cost c and gain g, is the exchange (c, g), apart by λ − s; one that may be taken back is
-/// (−c, −g), apart by s − λ. Where a class has several such steps in a row, each further one is an exchange of its own with the sums of all up to it.
+/// A step of a hull that may be taken, of slope s, cost c and gain g, is the exchange (c, g), apart by λ − s; one that
+/// may be taken back is (−c, −g), apart by s − λ. Where a class has several such steps in a row, each further one is an
+/// exchange of its own with the sums of all up to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Exchange<T> {
     /// The same for all exchanges of a class and for no other; ties go to the lower one.
@@ -26,8 +28,8 @@ pub(super) struct Exchange<T> {
     pub cost: T,
     /// Benefit added; negative where it is given up.
     pub gain: T,
-    /// λ·cost − gain, in units of benefit and rounded as it may be: it decides what is tried, never what fits. Negative only where the
-    /// class is not at its best for λ.
+    /// λ·cost − gain, in units of benefit and rounded as it may be: it decides what is tried, never what fits. Negative
+    /// only where the class is not at its best for λ.
     pub loss: f64,
     /// Loss per cost moved, so how far the slope is from λ. The nearest are tried first.
     pub apart: f64,
@@ -116,12 +118,13 @@ impl<T: Number> Repair<T> {
         }
     }
 
-    /// Looks for the exchanges, at most one of each class, that cost at most the room and gain the most; `None` where they do not gain
-    /// enough. [`Repair::found`] tells which they are.
+    /// Looks for the exchanges, at most one of each class, that cost at most the room and gain the most; `None` where
+    /// they do not gain enough. [`Repair::found`] tells which they are.
     ///
-    /// The best there are if both lists hold all that matters, else good ones. `exchanges` come in any order and leave in another; the
-    /// answer does not depend on it. A partial choice made is one step of `meter`; where that runs out the best so far is the answer.
-    /// At most `capacity` steps for each exchange, and a few times `capacity` in all where costs differ, since full lists end it.
+    /// The best there are if both lists hold all that matters, else good ones. `exchanges` come in any order and leave
+    /// in another; the answer does not depend on it. A partial choice made is one step of `meter`; where that runs out
+    /// the best so far is the answer. At most `capacity` steps for each exchange, and a few times `capacity` in all
+    /// where costs differ, since full lists end it.
     pub fn run(
         &mut self,
         exchanges: &mut [Exchange<T>],
@@ -146,7 +149,8 @@ impl<T: Number> Repair<T> {
         best
     }
 
-    /// Indices into the exchanges as the last run left them, one per class that is to move; empty where nothing gained enough.
+    /// Indices into the exchanges as the last run left them, one per class that is to move; empty where nothing gained
+    /// enough.
     pub fn found(&self) -> &[u32] {
         &self.found
     }
@@ -182,8 +186,8 @@ impl<T: Number> Repair<T> {
         open.min_by_key(|&side| self.lists[side].states.len())
     }
 
-    /// Adds a class to a list: every partial choice with each of its exchanges, without what is dominated or loses too much. A list that
-    /// would outgrow its capacity stays as it was and is full. False when the meter has run out.
+    /// Adds a class to a list: every partial choice with each of its exchanges, without what is dominated or loses too
+    /// much. A list that would outgrow its capacity stays as it was and is full. False when the meter has run out.
     fn extend(
         &mut self,
         side: usize,

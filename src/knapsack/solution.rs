@@ -14,8 +14,8 @@ pub struct Solution {
     pub upper_bound: Option<f64>,
     /// (upper bound − benefit) ÷ upper bound; 0 when `optimal` or when the bound is 0, `None` when nothing is feasible.
     pub gap: Option<f64>,
-    /// The multiplier λ: the slope of the step that the budget cuts, so what one more unit of budget is worth. 0 when every
-    /// useful step fits, infinite when nothing is feasible.
+    /// The multiplier λ: the slope of the step that the budget cuts, so what one more unit of budget is worth. 0 when
+    /// every useful step fits, infinite when nothing is feasible.
     pub lambda: f64,
     /// Whether any choice, and so this one, fits the budget. If not, this is the cheapest choice.
     pub feasible: bool,
@@ -23,7 +23,7 @@ pub struct Solution {
     pub optimal: bool,
     /// How far the cheapest choice exceeds the budget; 0 when feasible.
     pub shortfall: f64,
-    /// Steps of work counted against a limit, the same on every machine: see [`greedy_within`](super::greedy_within) and
-    /// [`capped`](super::capped).
+    /// Steps of work counted against a limit, the same on every machine: see [`greedy_within`](super::greedy_within)
+    /// and [`capped`](super::capped).
     pub steps: u64,
 }

@@ -27,11 +27,11 @@ pub enum Stages {
 
 /// The predicted time of drawing, in microseconds per unit.
 ///
-/// The default is that of an entry-level graphics card, from published render times (Godot's nightly benchmarks, 2023–25)
-/// of a Radeon RX 550, a UHD 730 and a GeForce GT 1030 that draw 100 to 10 000 boxes of 12 and spheres of 4 224
-/// triangles: 0.1, 0.2 and 0.35 µs per object, and 1.0, 2.0 and 1.5 ns per triangle with the half vertex that comes with
-/// it. They say nothing of pixels: 0.01 ns is a tenth of a nanosecond for one pixel in ten, since the projected area is
-/// that of the bounding sphere, most of which is empty or covered.
+/// The default is that of an entry-level graphics card, from published render times (Godot's nightly benchmarks,
+/// 2023–25) of a Radeon RX 550, a UHD 730 and a GeForce GT 1030 that draw 100 to 10 000 boxes of 12 and spheres of 4
+/// 224 triangles: 0.1, 0.2 and 0.35 µs per object, and 1.0, 2.0 and 1.5 ns per triangle with the half vertex that comes
+/// with it. They say nothing of pixels: 0.01 ns is a tenth of a nanosecond for one pixel in ten, since the projected
+/// area is that of the bounding sphere, most of which is empty or covered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CostModel {

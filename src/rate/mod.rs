@@ -2,8 +2,8 @@
 //! cost.
 //!
 //! Benefit = projected area · accuracy · importance · focus · motion, in px². All of it but the accuracy is the
-//! candidate's weight; the accuracy is the level's. [`weigh`] makes the weights alone, from one view, [`rate`] the details
-//! as well; [`details`] works them out for one candidate.
+//! candidate's weight; the accuracy is the level's. [`weigh`] makes the weights alone, from one view, [`rate`] the
+//! details as well; [`details`] works them out for one candidate.
 
 mod benefit;
 mod cost;

@@ -8,8 +8,8 @@ use crate::scene::{BLOCK, Block, Objects, lanes};
 use crate::view::Lens;
 
 /// Appends the candidates of a group of one view without their details: weights and the sum of areas; the sizes too
-/// where they are asked for. On so many threads where there are many objects (feature `rayon`). The caller closes the run
-/// with [`Candidates::end_group`]. Candidates must not be detailed.
+/// where they are asked for. On so many threads where there are many objects (feature `rayon`). The caller closes the
+/// run with [`Candidates::end_group`]. Candidates must not be detailed.
 pub fn weigh(
     objects: &Objects,
     seen: &Seen,

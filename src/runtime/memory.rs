@@ -89,7 +89,8 @@ pub(super) struct GroupMemory {
     /// Whole milliseconds since the frame before.
     elapsed_ms: u16,
     blocks: Vec<BlockMemory>,
-    /// Per slot, since when the level is wanted, by the group's clock in whole milliseconds, which wraps after seven weeks.
+    /// Per slot, since when the level is wanted, by the group's clock in whole milliseconds, which wraps after seven
+    /// weeks.
     since_ms: Vec<[u32; BLOCK]>,
     /// How many of what was in view are at each place.
     census: Vec<u32>,
@@ -201,8 +202,8 @@ impl GroupMemory {
         self.accounts.resize(self.blocks.len(), BlockAccounts::EMPTY);
     }
 
-    /// Notes that the candidates of `rows` are in view, and recalls what was wanted of them. The rows learn which of their
-    /// objects were in view in the last frame as well. Lists what has left the view.
+    /// Notes that the candidates of `rows` are in view, and recalls what was wanted of them. The rows learn which of
+    /// their objects were in view in the last frame as well. Lists what has left the view.
     pub fn recall(
         &mut self,
         rows: &mut [Row],

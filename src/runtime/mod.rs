@@ -309,8 +309,8 @@ impl Runtime {
         self.report.broken_views = views.len() - order.len();
     }
 
-    /// Whether candidates have to be rated in detail: for a policy that asks for it, and wherever details of one candidate
-    /// could not be worked out from one view alone.
+    /// Whether candidates have to be rated in detail: for a policy that asks for it, and wherever details of one
+    /// candidate could not be worked out from one view alone.
     fn is_in_detail(&self, views: &[ViewInput<'_>]) -> bool {
         let several = self.scratch.order.windows(2).any(|pair| views[pair[0]].group == views[pair[1]].group);
         self.selector.needs() == Needs::Details
@@ -357,8 +357,8 @@ impl Runtime {
         fades_us.value()
     }
 
-    /// Recalls what was wanted of the candidates of a group, which are in `rows`, and lists what has left its view. Returns
-    /// the time since the group's last frame.
+    /// Recalls what was wanted of the candidates of a group, which are in `rows`, and lists what has left its view.
+    /// Returns the time since the group's last frame.
     fn recall(&mut self, objects: &Objects, run: usize, rows: Range<usize>) -> f64 {
         let places = Places { objects, rates: &self.rates, once: self.counts_once(run) };
         let Scratch { candidates, levels, .. } = &mut self.scratch;
@@ -510,8 +510,8 @@ impl Runtime {
         }
     }
 
-    /// Asks for a transition of candidate `i` to what is wanted. Where a level that is `shown` is no longer in its table
-    /// or in memory there can be none: it switches hard.
+    /// Asks for a transition of candidate `i` to what is wanted. Where a level that is `shown` is no longer in its
+    /// table or in memory there can be none: it switches hard.
     fn ask(&mut self, objects: &Objects, group: GroupId, i: usize, shown: Shown) {
         let (slot, wanted) = (self.scratch.candidates.slot_of(i), self.scratch.levels[i]);
         let table = objects.blocks()[slot as usize / BLOCK].table[slot as usize % BLOCK];
@@ -530,8 +530,8 @@ impl Runtime {
         }
     }
 
-    /// Starts, aborts and retargets transitions, in the order of ids, while the fade reserve lasts, which is one for all
-    /// groups.
+    /// Starts, aborts and retargets transitions, in the order of ids, while the fade reserve lasts, which is one for
+    /// all groups.
     fn grant_requests(&mut self, objects: &Objects, group: GroupId, reserve_us: &mut f64) {
         let options = self.options.transition;
         let mut requests = std::mem::take(&mut self.scratch.requests);

@@ -40,8 +40,8 @@ impl Tally {
         self.add(frame, i, shown);
     }
 
-    /// Counts who was deferred and is none of the `news`, which are ascending, at the level it holds instead of the one that
-    /// was chosen for it.
+    /// Counts who was deferred and is none of the `news`, which are ascending, at the level it holds instead of the one
+    /// that was chosen for it.
     pub fn recount_deferred(&mut self, frame: &Frame<'_>, news: &[usize], levels: &[Level]) {
         let Candidates { place, deferred, .. } = frame.candidates;
         let mut news = news.iter().peekable();

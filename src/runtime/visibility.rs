@@ -12,8 +12,8 @@ pub enum Visibility<'a> {
     Computed,
     /// What the runtime's culling finds, but for these: objects that the caller knows to be occluded.
     Without(&'a [ObjectId]),
-    /// Exactly these, where they exist, are not hidden and have a finite bound: the caller's own culling. The order does
-    /// not matter.
+    /// Exactly these, where they exist, are not hidden and have a finite bound: the caller's own culling. The order
+    /// does not matter.
     Given(&'a [ObjectId]),
 }
 

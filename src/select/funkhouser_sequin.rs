@@ -14,12 +14,12 @@ use crate::table::Level;
 /// Visualization of Complex Virtual Environments", 1993.
 ///
 /// It starts from the levels of the last frame (the cheapest for what has come into view). Each iteration raises the
-/// object with the highest value of its next finer level, then, while over the budget, lowers the object with the lowest
-/// value of its current level; it ends with the iteration that raises and lowers the same object. Value is benefit ÷ cost
-/// of the level itself, not of the step.
+/// object with the highest value of its next finer level, then, while over the budget, lowers the object with the
+/// lowest value of its current level; it ends with the iteration that raises and lowers the same object. Value is
+/// benefit ÷ cost of the level itself, not of the step.
 ///
-/// It is kept for comparison: it can end far from the optimum (one object in 346.86 units of budget at 35.17 of 618.90),
-/// it promises no share of it, and it has no certificate.
+/// It is kept for comparison: it can end far from the optimum (one object in 346.86 units of budget at 35.17 of
+/// 618.90), it promises no share of it, and it has no certificate.
 #[derive(Clone, Debug)]
 pub struct FunkhouserSequin {
     hysteresis: f32,

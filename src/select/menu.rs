@@ -1,5 +1,5 @@
-//! What candidates may choose from that share no hull: those that may be left out, and all where the slower of two stages
-//! counts.
+//! What candidates may choose from that share no hull: those that may be left out, and all where the slower of two
+//! stages counts.
 //!
 //! Costs are worked out for eight levels side by side, from columns per table that are kept until the rates change.
 

@@ -55,8 +55,8 @@ pub struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// Candidate `i`. Where candidates are not [detailed](Candidates::is_detailed) its details are worked out, which takes
-    /// some 50 ns.
+    /// Candidate `i`. Where candidates are not [detailed](Candidates::is_detailed) its details are worked out, which
+    /// takes some 50 ns.
     pub fn candidate(&self, i: usize) -> Candidate {
         let c = self.candidates;
         if c.is_detailed() {
@@ -176,9 +176,9 @@ pub trait Selector: Send {
         Cause::Budget
     }
 
-    /// Candidates of the last selection, in any order, for which the policy has chosen another level than it wants shown for
-    /// now. The next frame starts from what was chosen ([`Candidates::place`]), and [`Frame::account`] tells for how long
-    /// something has been owed. `None` from a policy that has no use for accounts.
+    /// Candidates of the last selection, in any order, for which the policy has chosen another level than it wants
+    /// shown for now. The next frame starts from what was chosen ([`Candidates::place`]), and [`Frame::account`] tells
+    /// for how long something has been owed. `None` from a policy that has no use for accounts.
     fn deferred(&self) -> Option<&[Deferral]> {
         None
     }

@@ -17,7 +17,8 @@ pub struct PredictiveOptions {
     /// band, and the options below have no effect.
     pub steadiness: Option<Steadiness>,
     /// Price of a switch: a better level is taken when it is worth 1/(1 − hysteresis) of the going rate, and given up
-    /// when it is worth less than 1/(1 + hysteresis) of it. In 0…1, exclusive. Higher switches less and spends less well.
+    /// when it is worth less than 1/(1 + hysteresis) of it. In 0…1, exclusive. Higher switches less and spends less
+    /// well.
     pub hysteresis: f32,
     /// For so long after a switch the price is `dwell` instead.
     pub dwell_ms: u32,
@@ -157,8 +158,8 @@ impl Predictive {
         self.odd.push(OddClass { at: i as u32, class });
     }
 
-    /// The optimum up to `budget` in `levels`, the dead band being above `ease`. Under steadiness `levels` are led there
-    /// instead, and the outcome has their cost and benefit.
+    /// The optimum up to `budget` in `levels`, the dead band being above `ease`. Under steadiness `levels` are led
+    /// there instead, and the outcome has their cost and benefit.
     fn solve(&mut self, frame: &Frame<'_>, budget: u64, ease: u64, levels: &mut [Level]) -> Outcome {
         let &Candidates { ref weight, heaviest, ref place, ref census, .. } = frame.candidates;
         let stay = |i: usize| self.options.price(frame.candidates.previous(i), || frame.age_ms(i));
@@ -240,8 +241,8 @@ impl Selector for Predictive {
         self.fall * self.lambda / (1.0 + f64::from(self.options.hysteresis))
     }
 
-    /// Held back by steadiness where the optimum is finer, or by the price of switching where the next finer level is worth
-    /// the going rate without it.
+    /// Held back by steadiness where the optimum is finer, or by the price of switching where the next finer level is
+    /// worth the going rate without it.
     fn cause(&self, frame: &Frame<'_>, i: usize, level: Level) -> Cause {
         if let Some(steadiness) = self.options.steadiness {
             let is_full = steadiness.is_full(frame.account(i));
@@ -281,8 +282,8 @@ impl Selector for Predictive {
     }
 }
 
-/// Opens the account of every candidate that does not hold the level the knapsack has for it: of those that were looked at
-/// closely, and of those that were deferred and are where they were. Who has just come into view, and whose level is
+/// Opens the account of every candidate that does not hold the level the knapsack has for it: of those that were looked
+/// at closely, and of those that were deferred and are where they were. Who has just come into view, and whose level is
 /// allowed no longer, takes it at once.
 fn open_accounts<F: Fn(usize) -> f32, M: Menus>(
     accounts: &mut Accounts,

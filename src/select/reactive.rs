@@ -21,7 +21,8 @@ pub struct ReactiveOptions {
     /// Half the width of the dead band around the target, as a fraction. Narrower tracks closer and hunts sooner.
     pub dead_band: f32,
     /// Share of the relative error that is corrected per measurement. Filter, dwell and measurements two frames late
-    /// delay the answer by a dozen frames: values from about 0.3 on hunt for ever, and a longer dwell wants a smaller one.
+    /// delay the answer by a dozen frames: values from about 0.3 on hunt for ever, and a longer dwell wants a smaller
+    /// one.
     pub gain: f32,
     /// The most that the factor rises per measurement, as a fraction.
     pub rise: f32,

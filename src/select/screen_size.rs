@@ -13,8 +13,8 @@ use crate::table::Level;
 /// What decides that a level is good enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measure {
-    /// Its geometric error, projected at the distance of the object's centre, is at most so many pixels. (At the nearest
-    /// point, an object that contains the eye would be finest at any price.)
+    /// Its geometric error, projected at the distance of the object's centre, is at most so many pixels. (At the
+    /// nearest point, an object that contains the eye would be finest at any price.)
     ErrorPx(f32),
     /// The object is smaller than its author's size for the next finer level ([`crate::table::LevelRecord::min_size`]).
     /// Tables that do not say fall back to the error in pixels.

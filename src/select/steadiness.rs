@@ -1,17 +1,17 @@
 //! Steadiness: from the optimum of a frame to levels that stay.
 //!
-//! A budget that is all spent makes the optimum restless: a fraction of a per cent more or less of what a frame costs at
-//! least moves λ, and with it the levels of everything near it; a step that is large against the budget takes or leaves
-//! room for a hundred small ones. So the optimum is *owed*, not shown. What is held stays, and every object keeps
-//! account of what it is owed:
+//! A budget that is all spent makes the optimum restless: a fraction of a per cent more or less of what a frame costs
+//! at least moves λ, and with it the levels of everything near it; a step that is large against the budget takes or
+//! leaves room for a hundred small ones. So the optimum is *owed*, not shown. What is held stays, and every object
+//! keeps account of what it is owed:
 //!
-//! - An object held finer than the optimum is kept while the budget lasts. When it does not, such objects are coarsened,
-//!   those of the least benefit per cost first. Nothing else coarsens, and this always suffices: with all of them
-//!   coarsened no more is spent than by the optimum.
+//! - An object held finer than the optimum is kept while the budget lasts. When it does not, such objects are
+//!   coarsened, those of the least benefit per cost first. Nothing else coarsens, and this always suffices: with all of
+//!   them coarsened no more is spent than by the optimum.
 //! - An object held coarser is owed the difference. It is refined when what it is owed, times how long, comes to the
 //!   price of a switch: at once where much is owed, later where little is, never where the optimum changes its mind
-//!   before. That is the break-even rule of renting or buying skis, which knows no future and pays at most twice what it
-//!   would have paid had it known (Karlin, Manasse, Rudolph and Sleator, "Competitive snoopy caching", 1988).
+//!   before. That is the break-even rule of renting or buying skis, which knows no future and pays at most twice what
+//!   it would have paid had it known (Karlin, Manasse, Rudolph and Sleator, "Competitive snoopy caching", 1988).
 //! - What lies just above λ is the first that the optimum changes its mind about. So a debt counts only by what it is
 //!   worth beyond a few times λ; one that is worth more than that is paid soon however little it is, one that is worth
 //!   less must wait.
@@ -34,8 +34,8 @@ use crate::table::Level;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steadiness {
     /// Price of a switch: an object is refined when its surplus, times the time it has been owed, comes to so many
-    /// seconds of the mean object's gain. Its surplus is the benefit it is owed less what its cost is worth elsewhere, by
-    /// `margin`. From 0 to 3600. Higher switches less and shows later what is owed.
+    /// seconds of the mean object's gain. Its surplus is the benefit it is owed less what its cost is worth elsewhere,
+    /// by `margin`. From 0 to 3600. Higher switches less and shows later what is owed.
     pub patience_s: f32,
     /// The price is so many times higher for an object that was coarsened less than a second ago. From 1 to 1000.
     pub turn: f32,
@@ -49,8 +49,8 @@ pub struct Steadiness {
     pub longest_ms: u16,
     /// While no more than this share of the gain is owed in all, nothing is due. In 0…1, exclusive.
     pub content: f64,
-    /// Dead band of the budget, as a fraction of it: what is left beyond it goes to debts that are not due. In 0…1; at 1
-    /// none does. Higher switches less and leaves more unspent.
+    /// Dead band of the budget, as a fraction of it: what is left beyond it goes to debts that are not due. In 0…1; at
+    /// 1 none does. Higher switches less and leaves more unspent.
     pub spare: f64,
     /// So many refinements an object may have at once, from 1 to 15; after that one in 256 ms, however much it is owed.
     pub burst: u8,
@@ -238,8 +238,8 @@ impl Accounts {
     }
 
     /// Pays the debts that are due, then calls in credits, the least benefit per cost first, until the budget is kept,
-    /// and spends what is left beyond the dead band on other debts, the most benefit first; the lower `key` of a candidate
-    /// goes first. Returns the cost.
+    /// and spends what is left beyond the dead band on other debts, the most benefit first; the lower `key` of a
+    /// candidate goes first. Returns the cost.
     ///
     /// O(accounts), and a sort of about so many credits as are called in, or of debts as are paid early.
     pub fn settle(&mut self, steadiness: &Steadiness, optimum: &Optimum, key: impl Fn(u32) -> u128) -> u64 {

@@ -1,7 +1,8 @@
 //! One pass over the columns for the policies that decide about each object by itself.
 //!
-//! A plain object stays at its level while its size lies in the interval of that level. Who stays is told without branches
-//! and counted by level; only the others are decided one by one. The sums are those of [`Frame::report`], of counts.
+//! A plain object stays at its level while its size lies in the interval of that level. Who stays is told without
+//! branches and counted by level; only the others are decided one by one. The sums are those of [`Frame::report`], of
+//! counts.
 
 use std::ops::Range;
 
@@ -59,8 +60,8 @@ impl Sweep {
         self.holds.push(Hold::OPEN);
     }
 
-    /// Chooses the levels of the candidates of `range`, by `rule` for those that may not stay. `levels` is of all candidates
-    /// and has what they hold.
+    /// Chooses the levels of the candidates of `range`, by `rule` for those that may not stay. `levels` is of all
+    /// candidates and has what they hold.
     pub fn choose(
         &mut self,
         frame: &Frame<'_>,

@@ -350,8 +350,8 @@ pub fn budget() -> impl Strategy<Value = BudgetOf> {
     ]
 }
 
-/// The measurements that arrive before frame `n`: the frames of `late` frames ago took `ratio` times what was predicted.
-/// Every seventh is no time at all, and strangers come along.
+/// The measurements that arrive before frame `n`: the frames of `late` frames ago took `ratio` times what was
+/// predicted. Every seventh is no time at all, and strangers come along.
 pub fn measured(n: u64, predicted_us: &[f64], late: u64, ratio: f64) -> Vec<FrameTime> {
     let Some(frame) = n.checked_sub(late + 1).filter(|&f| f > 0) else { return Vec::new() };
     let time_us = match n % 7 {

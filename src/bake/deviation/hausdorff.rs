@@ -9,10 +9,10 @@ use super::shape::Shape;
 
 /// A share of the largest coordinate that is more than all rounding can come to.
 ///
-/// A corner of a piece is off the triangle by three units in the last place (2⁻⁵³ of the largest coordinate) per axis and
-/// cut, 6 · 2⁻⁵³ in length, and no piece is cut more than [`MOST_CUTS`] times: 3e-13. A distance is off by less than 50
-/// units. Cells of an overlay leave no point of a triangle farther from them than 4e-15 · 4 / 0.02, 8e-13. Distance to a
-/// set changes no faster than the point moves.
+/// A corner of a piece is off the triangle by three units in the last place (2⁻⁵³ of the largest coordinate) per axis
+/// and cut, 6 · 2⁻⁵³ in length, and no piece is cut more than [`MOST_CUTS`] times: 3e-13. A distance is off by less
+/// than 50 units. Cells of an overlay leave no point of a triangle farther from them than 4e-15 · 4 / 0.02, 8e-13.
+/// Distance to a set changes no faster than the point moves.
 const SLACK: f64 = 1e-11;
 
 /// Pieces that were cut so often are left as they are.
@@ -42,9 +42,10 @@ impl Extent {
 /// Bounds the distance of all points of `from` to `to`, and with it what `known` bounds.
 ///
 /// After M. Guthe, P. Borodin, R. Klein, "Fast and accurate Hausdorff distance calculation between meshes", 2005, and
-/// M. Tang, M. Lee, Y. J. Kim, "Interactive Hausdorff distance computation for general polygonal models", 2009: pieces in
-/// the order of their upper bounds, until no bound exceeds the largest distance found by more than is allowed. We depart
-/// from them in where pieces are cut ([`Piece::cut`]) and in not looking closely where the other direction is larger.
+/// M. Tang, M. Lee, Y. J. Kim, "Interactive Hausdorff distance computation for general polygonal models", 2009: pieces
+/// in the order of their upper bounds, until no bound exceeds the largest distance found by more than is allowed. We
+/// depart from them in where pieces are cut ([`Piece::cut`]) and in not looking closely where the other direction is
+/// larger.
 pub(super) fn bound(from: &Shape, to: &Shape, known: Extent, options: &Options) -> Extent {
     let mut search = Search::new(from, to, known, options);
     search.visit_vertices();
@@ -69,7 +70,8 @@ struct Search<'a> {
     splits: usize,
     /// For each vertex the triangle nearest to it.
     near: Vec<u32>,
-    /// What is to be looked at: the bits of the squared bound (which order as the numbers do), and the slot of the piece.
+    /// What is to be looked at: the bits of the squared bound (which order as the numbers do), and the slot of the
+    /// piece.
     queue: BinaryHeap<(u64, u32)>,
     pieces: Vec<Piece>,
     free: Vec<u32>,
@@ -139,8 +141,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Lays a triangle over the other surface and takes the cells that are not close enough into the queue; false where it
-    /// cannot be laid over it.
+    /// Lays a triangle over the other surface and takes the cells that are not close enough into the queue; false where
+    /// it cannot be laid over it.
     fn settles_in_cells(&mut self, piece: &Piece, overlay: &mut Overlay, most: usize) -> bool {
         let (mut left2, mut far) = (self.left2, Vec::new());
         let (bvh, close2) = (&self.to.bvh, self.close2);

@@ -1,20 +1,22 @@
 //! How far two surfaces are apart, in both directions.
 //!
-//! A simplifier's own error is an estimate: it falls short of the distance between the surfaces, often by a multiple. What
-//! the runtime projects to pixels has to be measured, and what users are to trust has to be a bound:
+//! A simplifier's own error is an estimate: it falls short of the distance between the surfaces, often by a multiple.
+//! What the runtime projects to pixels has to be measured, and what users are to trust has to be a bound:
 //!
-//! - **Hausdorff distance**: how far a point of either surface can be from the other surface. Every triangle is covered by
-//!   pieces whose distance is bounded from above; pieces that could hold the maximum are split until the bound is within
-//!   [`Options::relative`] of a distance that is attained. The bound is rounded outwards, so it is one.
-//! - **Root mean square**: of the distance from a random point of one surface to the other one. An estimate, by sampling,
-//!   with its standard error. Of the two directions the larger counts, as in N. Aspert, D. Santa-Cruz, T. Ebrahimi,
-//!   "MESH: measuring errors between surfaces using the Hausdorff distance", 2002. Each direction is what
-//!   P. Cignoni, C. Rocchini, R. Scopigno, "Metro: measuring error on simplified surfaces", 1998, and MeshLab call RMS.
+//! - **Hausdorff distance**: how far a point of either surface can be from the other surface. Every triangle is covered
+//!   by pieces whose distance is bounded from above; pieces that could hold the maximum are split until the bound is
+//!   within [`Options::relative`] of a distance that is attained. The bound is rounded outwards, so it is one.
+//! - **Root mean square**: of the distance from a random point of one surface to the other one. An estimate, by
+//!   sampling, with its standard error. Of the two directions the larger counts, as in N. Aspert, D. Santa-Cruz, T.
+//!   Ebrahimi, "MESH: measuring errors between surfaces using the Hausdorff distance", 2002. Each direction is what P.
+//!   Cignoni, C. Rocchini, R. Scopigno, "Metro: measuring error on simplified surfaces", 1998, and MeshLab call RMS.
 //!
 //! A surface is the union of its triangles as closed sets. A triangle without area still counts as the segment or the
-//! point that it is; a vertex that no triangle names does not count. Which side of a triangle is its front plays no part.
+//! point that it is; a vertex that no triangle names does not count. Which side of a triangle is its front plays no
+//! part.
 //!
-//! Equal surfaces, and two that are both empty, do not deviate. Where one is empty there is no distance, and an error says so.
+//! Equal surfaces, and two that are both empty, do not deviate. Where one is empty there is no distance, and an error
+//! says so.
 //!
 //! ```
 //! use glam::Vec3;
@@ -52,16 +54,17 @@ pub struct Options {
     /// How far the bound on the Hausdorff distance may exceed the true one, as a share of it. From 0.001, at which a
     /// measurement takes several times as long, to 1.
     pub relative: f64,
-    /// How far it may exceed it in any case, as a share of the smaller bounding-box diagonal: what counts as equal. From
-    /// 1e-9 to 1.
+    /// How far it may exceed it in any case, as a share of the smaller bounding-box diagonal: what counts as equal.
+    /// From 1e-9 to 1.
     pub of_diagonal: f64,
     /// The relative standard error at which sampling for the mean square ends. From 0.0005 to 1.
     pub rms_error: f64,
     /// The most samples taken in each direction; where most of a surface is exact, they end before `rms_error` is met.
     pub max_samples: usize,
     /// The most pieces and cells that the search for the Hausdorff distance looks at in each direction, per triangle of
-    /// both surfaces, or of 65 536 where they have fewer; each takes about 2 µs and at most 150 bytes. Where that ends a
-    /// search, as slivers that all cross each other make it, what is found is still a bound, but looser than asked for.
+    /// both surfaces, or of 65 536 where they have fewer; each takes about 2 µs and at most 150 bytes. Where that ends
+    /// a search, as slivers that all cross each other make it, what is found is still a bound, but looser than asked
+    /// for.
     pub max_splits: usize,
     /// Where samples lie; equal seeds give equal results.
     pub seed: u64,
@@ -115,8 +118,8 @@ impl Deviation {
     }
 }
 
-/// The two-sided deviation between two surfaces. O(n log n) to prepare and, for surfaces that resemble each other, about as
-/// much to measure: two seconds or so for half a million triangles.
+/// The two-sided deviation between two surfaces. O(n log n) to prepare and, for surfaces that resemble each other,
+/// about as much to measure: two seconds or so for half a million triangles.
 ///
 /// A [`Ruler`] spares preparing the first surface again where several are measured against it.
 ///
@@ -126,8 +129,8 @@ pub fn deviation(first: &Surface, second: &Surface, options: &Options) -> Result
     Ruler::new(first)?.deviation(second, options)
 }
 
-/// The contract of a chain of levels: for each level the largest bound so far, rounded up to single precision. A coarser level
-/// is never said to be truer than a finer one.
+/// The contract of a chain of levels: for each level the largest bound so far, rounded up to single precision. A
+/// coarser level is never said to be truer than a finer one.
 pub fn running_max(chain: &[Deviation]) -> Vec<f32> {
     let so_far = |most: &mut f32, level: &Deviation| {
         *most = most.max(bvh::round_up(level.hausdorff));

@@ -174,11 +174,11 @@ impl<'a> Overlay<'a> {
         Self { below, visited, round: 0, waiting: Vec::new(), overlap: OVERLAP * reach }
     }
 
-    /// Calls `visit` with cells that together cover the triangle with these `corners`, beginning with the triangle below
-    /// that is named; returns how many.
+    /// Calls `visit` with cells that together cover the triangle with these `corners`, beginning with the triangle
+    /// below that is named; returns how many.
     ///
-    /// `None` where cells cannot be shown to cover it: at borders, folds and vertical walls below, for needles, and beyond
-    /// `most` cells.
+    /// `None` where cells cannot be shown to cover it: at borders, folds and vertical walls below, for needles, and
+    /// beyond `most` cells.
     pub(super) fn lay(
         &mut self,
         corners: &[DVec3; 3],

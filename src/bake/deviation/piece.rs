@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::bvh::Bvh;
 
-/// Every so many cuts a piece is halved across its longest side, so that pieces become small wherever the other cuts fall.
+/// Every so many cuts a piece is halved across its longest side, so that pieces become small wherever the other cuts
+/// fall.
 const HALVE_EVERY: u16 = 4;
 
 /// Cuts keep this share of an edge's length from its ends.
@@ -76,11 +77,11 @@ impl Piece {
         Cover { triangle, distances2: self.corners.map(|corner| to.distance2(triangle, corner)) }
     }
 
-    /// Where to cut a piece that its best cover leaves farther than the root of `close2`: where the cover and the triangle
-    /// that is nearest to the worst corner are equally far.
+    /// Where to cut a piece that its best cover leaves farther than the root of `close2`: where the cover and the
+    /// triangle that is nearest to the worst corner are equally far.
     ///
-    /// That is where the surface bends between them, so that two cuts part a piece that lies across an edge of the other
-    /// surface, where halving would need as many as the edge has room for.
+    /// That is where the surface bends between them, so that two cuts part a piece that lies across an edge of the
+    /// other surface, where halving would need as many as the edge has room for.
     pub(super) fn cut(&self, cover: &Cover, to: &Bvh, close2: f64) -> Cut {
         if self.depth % HALVE_EVERY == HALVE_EVERY - 1 {
             return self.halved(cover);

@@ -25,7 +25,8 @@ pub struct Spread {
     pub samples: usize,
 }
 
-/// Samples `from` until the standard error is as small as asked for, in passes that are each spread over the whole surface.
+/// Samples `from` until the standard error is as small as asked for, in passes that are each spread over the whole
+/// surface.
 pub(super) fn sample(from: &Shape, to: &Shape, options: &Options) -> Spread {
     let mut sums = Sums::default();
     let strata = Strata::new(from);
@@ -87,8 +88,8 @@ impl<'a> Strata<'a> {
         Self { shape, total: ends.len() as f64, ends }
     }
 
-    /// Takes one sample from each of `count` strata of equal size, in their order, so that one sample's nearest triangle is
-    /// a good hint for the next.
+    /// Takes one sample from each of `count` strata of equal size, in their order, so that one sample's nearest
+    /// triangle is a good hint for the next.
     ///
     /// Where in its stratum and where in its triangle is given by an additive recurrence with the powers of the root of
     /// x⁴ = x + 1 (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018), rotated.
@@ -123,7 +124,8 @@ fn within([a, b, c]: &[DVec3; 3], u: f64, v: f64) -> DVec3 {
     *a + ((*b - *a) * (1.0 - v) + (*c - *a) * v) * root
 }
 
-/// Three numbers in [0, 1) for a pass (G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom number generators", 2014).
+/// Three numbers in [0, 1) for a pass (G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom number generators",
+/// 2014).
 fn rotation(seed: u64, pass: u64) -> [f64; 3] {
     [1, 2, 3].map(|k| {
         let state = seed.wrapping_add((3 * pass + k).wrapping_mul(0x9e37_79b9_7f4a_7c15));

@@ -11,8 +11,8 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// The referenced vertices and the triangles of a surface, relative to an origin of its neighbourhood.
 ///
-/// Differences of `f32` are exact in `f64` or as precise as their size, so that a mesh far from its origin is measured as
-/// well as one around it.
+/// Differences of `f32` are exact in `f64` or as precise as their size, so that a mesh far from its origin is measured
+/// as well as one around it.
 #[derive(Clone, Debug)]
 pub(super) struct Shape {
     /// Corners of triangles, in the order of the tree.

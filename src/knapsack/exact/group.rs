@@ -64,7 +64,8 @@ impl<T: Number> Group<T> {
         Self { states: vec![base], nodes: vec![Node { parent: 0, class: 0, item: 0 }], nodes_allowed: NODES }
     }
 
-    /// Adds a class: every state with every alternative, without what is dominated or what must end with a gap above `limit`.
+    /// Adds a class: every state with every alternative, without what is dominated or what must end with a gap above
+    /// `limit`.
     ///
     /// `relief` is of all classes outside the group, the new one being inside.
     pub fn extend(

@@ -1,13 +1,15 @@
 //! The optimum, proved: deepening on the gap.
 //!
-//! At the critical price λ every class has a best item, the base, and every other item a *loss*. What a choice lacks to the Lagrangian bound, its gap,
-//! is the sum of its losses plus λ times the room it leaves: nothing in it is negative. So the choices with a gap up to some level are few, and
-//! if any exist, the best of them is the optimum. Levels rise until one does.
+//! At the critical price λ every class has a best item, the base, and every other item a *loss*. What a choice lacks to
+//! the Lagrangian bound, its gap, is the sum of its losses plus λ times the room it leaves: nothing in it is negative.
+//! So the choices with a gap up to some level are few, and if any exist, the best of them is the optimum. Levels rise
+//! until one does.
 //!
 //! - [`prices`]: base, losses and the bound. [`surcharge`]: a tighter bound where benefit = cost + a few constants.
-//! - [`group`]: lists of partial choices with dominance, pruned by [`relief`], the linear relaxation of the classes outside.
-//! - Two lists meet in the middle; when they are full, a third is tried against both (enough where choices that meet the bound
-//!   abound, as in subset sums), and [`quarters`] proves a level in the memory of four short lists.
+//! - [`group`]: lists of partial choices with dominance, pruned by [`relief`], the linear relaxation of the classes
+//!   outside.
+//! - Two lists meet in the middle; when they are full, a third is tried against both (enough where choices that meet
+//!   the bound abound, as in subset sums), and [`quarters`] proves a level in the memory of four short lists.
 
 mod group;
 mod prices;
@@ -27,27 +29,28 @@ use super::{Instance, Solution};
 
 /// Solves to proved optimality, or as far as `stop` and a gigabyte of memory allow.
 ///
-/// `stop` is polled several times a second and ends the search when it returns true; the best known choice then comes back with an
-/// honest upper bound and `optimal: false`. The same happens, without being asked, where a level's choices are too many to hold; polls never change
-/// what is found otherwise.
+/// `stop` is polled several times a second and ends the search when it returns true; the best known choice then comes
+/// back with an honest upper bound and `optimal: false`. The same happens, without being asked, where a level's choices
+/// are too many to hold; polls never change what is found otherwise.
 ///
-/// Milliseconds for uncorrelated, weakly correlated and level-of-detail instances of 400 classes; seconds for subset sums and constant surcharges
-/// up to 1e12. Exponential in the root of (level · choices per unit of loss) at worst: hardest are large amounts whose benefits
-/// differ from the costs by comparatively little, on no common grid.
+/// Milliseconds for uncorrelated, weakly correlated and level-of-detail instances of 400 classes; seconds for subset
+/// sums and constant surcharges up to 1e12. Exponential in the root of (level · choices per unit of loss) at worst:
+/// hardest are large amounts whose benefits differ from the costs by comparatively little, on no common grid.
 ///
-/// After D. Pisinger, "A minimal algorithm for the multiple-choice knapsack problem", 1995 (expanding core, dominance, linear bounds of states), and E. Horowitz,
-/// S. Sahni, "Computing partitions with applications to the knapsack problem", 1974 (two lists). Departs from both by
-/// bounding the gap instead of starting from an incumbent.
+/// After D. Pisinger, "A minimal algorithm for the multiple-choice knapsack problem", 1995 (expanding core, dominance,
+/// linear bounds of states), and E. Horowitz, S. Sahni, "Computing partitions with applications to the knapsack
+/// problem", 1974 (two lists). Departs from both by bounding the gap instead of starting from an incumbent.
 pub fn exact(instance: &Instance, stop: &mut dyn FnMut() -> bool) -> Solution {
     solve(instance, Capacity::default(), u64::MAX, stop)
 }
 
 /// [`exact`], cut after `steps`: for a frame that has a hundred classes or so and time for a proof.
 ///
-/// A step is a hull step looked at or a partial choice made, some ten nanoseconds each; the count, and so the answer, is the same on
-/// every machine. Hulls, their order and the losses at λ are not counted: O(n log n) for n items. However few the steps, the answer is
-/// within the budget and its bound holds, and it is no worse than that of [`greedy_within`](super::greedy_within) as many. Of a hundred
-/// level-of-detail classes of five, 100 000 steps prove more than nine instances in ten.
+/// A step is a hull step looked at or a partial choice made, some ten nanoseconds each; the count, and so the answer,
+/// is the same on every machine. Hulls, their order and the losses at λ are not counted: O(n log n) for n items.
+/// However few the steps, the answer is within the budget and its bound holds, and it is no worse than that of
+/// [`greedy_within`](super::greedy_within) as many. Of a hundred level-of-detail classes of five, 100 000 steps prove
+/// more than nine instances in ten.
 pub fn capped(instance: &Instance, steps: u64) -> Solution {
     solve(instance, Capacity::default(), steps, &mut || false)
 }
@@ -124,8 +127,9 @@ impl<T: Number> Search<'_, T> {
 
     /// Looks at every choice with a gap up to `level`.
     ///
-    /// Two lists grow towards each other, the shorter one first, and are joined after each class. Once one is full, a third list of
-    /// the classes left is tried against both: complete where it holds all of them, else a search for a better choice.
+    /// Two lists grow towards each other, the shorter one first, and are joined after each class. Once one is full, a
+    /// third list of the classes left is tried against both: complete where it holds all of them, else a search for a
+    /// better choice.
     fn explore(&mut self, level: f64, meter: &mut Meter<'_>) -> Result<(), Halt> {
         let classes = std::mem::take(&mut self.prices.classes);
         let mut halves = [Group::new(), Group::new()];
@@ -303,7 +307,8 @@ impl<T: Number> Search<'_, T> {
         self.bound = self.bound.min(rest);
     }
 
-    /// The number of states grows like the exponential of the level's root: this factor asks for about five times as many.
+    /// The number of states grows like the exponential of the level's root: this factor asks for about five times as
+    /// many.
     fn growth(&self) -> f64 {
         let magnitude = (self.states.max(10) as f64).ln();
         ((magnitude + 5f64.ln()) / magnitude).powi(2).min(2.0)

@@ -1,5 +1,5 @@
-//! The instance seen at one price λ: every class at its best item for that price, every other item with the loss that choosing
-//! it costs against the Lagrangian bound.
+//! The instance seen at one price λ: every class at its best item for that price, every other item with the loss that
+//! choosing it costs against the Lagrangian bound.
 
 use std::cmp::Ordering;
 
@@ -42,8 +42,8 @@ pub(super) struct PricedClass<T> {
 
 /// An instance at one price.
 ///
-/// A choice that deviates from the base by cost x and losses ℓ has benefit g(λ) − Σℓ − λ·(room − x), where g(λ) is the base's benefit + λ·room: what
-/// it lacks to g(λ), its *gap*, is a sum of terms that are not negative.
+/// A choice that deviates from the base by cost x and losses ℓ has benefit g(λ) − Σℓ − λ·(room − x), where g(λ) is the
+/// base's benefit + λ·room: what it lacks to g(λ), its *gap*, is a sum of terms that are not negative.
 #[derive(Clone, Debug)]
 pub(super) struct Prices<T> {
     pub lambda: f64,
@@ -200,8 +200,8 @@ fn quick_loss(lambda: f64, base: Item, item: Item) -> Option<f64> {
     (loss.abs() > tail.iter().map(|term| term.abs()).sum()).then_some(loss)
 }
 
-/// A product, rounded, and the rounding error; `None` near the ends of the range (T. J. Dekker, "A floating-point technique for extending
-/// the available precision", 1971).
+/// A product, rounded, and the rounding error; `None` near the ends of the range (T. J. Dekker, "A floating-point
+/// technique for extending the available precision", 1971).
 fn product(a: f64, b: f64) -> Option<(f64, f64)> {
     let high = a * b;
     let safe = |value: f64| (1e-250..1e250).contains(&value.abs());

@@ -1,9 +1,10 @@
 //! The complete search where two lists do not fit: four, of which two at a time are combined on the fly.
 //!
-//! Of two halves of the classes with a joint loss up to a limit, one has at most half of it. So it is enough to hold each half's combinations
-//! up to *half* the limit and to stream the other half's up to the *whole* limit past them: the time of the longer list,
-//! the memory of the square root of all. The split in four follows R. Schroeppel, A. Shamir, "A T = O(2^(n/2)), S = O(2^(n/4))
-//! algorithm for certain NP-complete problems", 1981; the loss limit takes the place of their priority queues.
+//! Of two halves of the classes with a joint loss up to a limit, one has at most half of it. So it is enough to hold
+//! each half's combinations up to *half* the limit and to stream the other half's up to the *whole* limit past them:
+//! the time of the longer list, the memory of the square root of all. The split in four follows R. Schroeppel, A.
+//! Shamir, "A T = O(2^(n/2)), S = O(2^(n/4)) algorithm for certain NP-complete problems", 1981; the loss limit takes
+//! the place of their priority queues.
 
 use super::super::dyadic::Number;
 use super::super::ledger::Totals;
@@ -44,8 +45,8 @@ impl<'a, T: Number> Half<'a, T> {
         count
     }
 
-    /// Calls `visit` with every combination of loss above `floor` and up to the limit, which `row` returns anew after each row of so many
-    /// combinations.
+    /// Calls `visit` with every combination of loss above `floor` and up to the limit, which `row` returns anew after
+    /// each row of so many combinations.
     fn stream(
         &self,
         floor: f64,
@@ -96,7 +97,8 @@ struct Index<'a, T> {
     scale: f64,
     /// Costs are told apart by cells as wide as the room that may be left over.
     cell: f64,
-    /// One bit per hashed cell, set where a pair's cost lies: small enough for the cache, which most queries need not leave.
+    /// One bit per hashed cell, set where a pair's cost lies: small enough for the cache, which most queries need not
+    /// leave.
     filter: Vec<u64>,
 }
 
@@ -163,8 +165,8 @@ impl<'a, T: Number> Index<'a, T> {
 /// Takes a pair of combinations better than any before; returns the gain to beat and the limit from then on.
 pub(super) type Found<'a, T> = dyn FnMut(&Pair<T>, &Pair<T>) -> (T, f64) + 'a;
 
-/// Reports every pair of combinations, one of `held` with a loss up to half the limit and one of `streamed`, that gains more than the
-/// best so far.
+/// Reports every pair of combinations, one of `held` with a loss up to half the limit and one of `streamed`, that gains
+/// more than the best so far.
 pub(super) fn meet<T: Number>(
     prices: &Prices<T>,
     [held, streamed]: [&Half<'_, T>; 2],

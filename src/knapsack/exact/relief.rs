@@ -1,4 +1,5 @@
-//! What the linear relaxation says about classes that are still open: the least loss at which they take up cost, or give it back.
+//! What the linear relaxation says about classes that are still open: the least loss at which they take up cost, or
+//! give it back.
 
 use super::prices::{Edge, PricedClass};
 

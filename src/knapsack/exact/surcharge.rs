@@ -1,10 +1,11 @@
-//! A tighter bound where benefits are costs plus surcharges of few sizes: strongly correlated instances, whose linear bound is
-//! nearly a whole surcharge too high.
+//! A tighter bound where benefits are costs plus surcharges of few sizes: strongly correlated instances, whose linear
+//! bound is nearly a whole surcharge too high.
 //!
-//! Let d = benefit − cost of each item and D the sum of the chosen d. Benefit is at most budget + D, and D moves in multiples of the
-//! greatest common divisor u of all differences of d. The linear bound lies between two such D. Either D is at most the lower one, which bounds the
-//! benefit by budget + D; or it is at least the upper one, and the linear relaxation *with that condition*, a second multiplier µ, bounds it.
-//! In the spirit of the cardinality bounds of S. Martello, P. Toth, "Upper bounds and algorithms for hard 0-1 knapsack problems", 1997.
+//! Let d = benefit − cost of each item and D the sum of the chosen d. Benefit is at most budget + D, and D moves in
+//! multiples of the greatest common divisor u of all differences of d. The linear bound lies between two such D. Either
+//! D is at most the lower one, which bounds the benefit by budget + D; or it is at least the upper one, and the linear
+//! relaxation *with that condition*, a second multiplier µ, bounds it. In the spirit of the cardinality bounds of S.
+//! Martello, P. Toth, "Upper bounds and algorithms for hard 0-1 knapsack problems", 1997.
 
 use super::super::dyadic::Number;
 use super::prices::Prices;

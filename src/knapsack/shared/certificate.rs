@@ -95,8 +95,8 @@ impl Worth {
     }
 }
 
-/// Slopes this close to λ, relatively, may be on its other side without the rounding of single precision: three roundings
-/// of 2⁻²⁴ each, doubled. There the best position is looked for in double precision.
+/// Slopes this close to λ, relatively, may be on its other side without the rounding of single precision: three
+/// roundings of 2⁻²⁴ each, doubled. There the best position is looked for in double precision.
 pub(super) const NEAR: f32 = 4e-7;
 
 impl Sums {
@@ -140,12 +140,12 @@ impl Sums {
         self.priced_bound.add(class, weight, best);
     }
 
-    /// What the sums and those of the classes set aside come to. The price of switching of the latter is left out on both
-    /// sides: they are at the best position for λ with it.
+    /// What the sums and those of the classes set aside come to. The price of switching of the latter is left out on
+    /// both sides: they are at the best position for λ with it.
     ///
     /// Bounds are widened by what rounding can hide: two units per class for weights and premiums, two ticks per class
-    /// for scaled costs, the last binary digit of every value, doubled where switching is priced, and the last places of
-    /// the products.
+    /// for scaled costs, the last binary digit of every value, doubled where switching is priced, and the last places
+    /// of the products.
     pub fn outcome(&self, budget: u64, aside: &Aside) -> Outcome {
         let lambda = f64::from(self.lambda);
         let digits = 2.0 * self.weight as f64 / ((1u64 << FRACTION_BITS) as f64 * self.unit);

@@ -52,8 +52,8 @@ impl<'a> Class<'a> {
         self.plain_slope(position) * price
     }
 
-    /// The position where steps of priced slope λ or more end, λ > 0. Looked for from `near`, which from frame to frame is
-    /// nearly always the answer.
+    /// The position where steps of priced slope λ or more end, λ > 0. Looked for from `near`, which from frame to frame
+    /// is nearly always the answer.
     pub fn reach(&self, near: u8, lambda: f32) -> u8 {
         reach(near, lambda, |p| self.slope(p))
     }

@@ -1,9 +1,9 @@
 //! Classes by the hundred thousand, nearly all of which stay where they are.
 //!
-//! Before anything else it is clear from counts alone whether not even the cheapest choice fits, or everything does, or λ
-//! has to be found. Given a bracket of λ, [`sift`] finds the classes that hold their item whatever λ in it turns out to be.
-//! Of the others most go to one position whatever λ is; they are decided, and set aside with the settled ones as sums. Only
-//! the rest are listed as classes, and solved as a list is. The answer is that of the list of all classes.
+//! Before anything else it is clear from counts alone whether not even the cheapest choice fits, or everything does, or
+//! λ has to be found. Given a bracket of λ, [`sift`] finds the classes that hold their item whatever λ in it turns out
+//! to be. Of the others most go to one position whatever λ is; they are decided, and set aside with the settled ones as
+//! sums. Only the rest are listed as classes, and solved as a list is. The answer is that of the list of all classes.
 //!
 //! Classes with items of their own are decided from these (`menus.rs`). A hull is made for those that are listed alone.
 
@@ -132,7 +132,8 @@ struct Totals {
 }
 
 impl Totals {
-    /// What is held is left out of the count where it is not `with_held`: of a class with items of its own it takes a hull.
+    /// What is held is left out of the count where it is not `with_held`: of a class with items of its own it takes a
+    /// hull.
     fn of<F: Fn(usize) -> f32, M: Menus>(
         profiles: &mut Profiles,
         crowd: &Crowd<'_, F, M>,
@@ -251,7 +252,8 @@ impl Aside {
         self.cost = self.cost.saturating_sub(class.cost(class.held()));
     }
 
-    /// Sets a class aside that goes to its position for every λ of the bracket. `held` is the code of the item it holds.
+    /// Sets a class aside that goes to its position for every λ of the bracket. `held` is the code of the item it
+    /// holds.
     fn decide(&mut self, decided: Decided, class: &Class<'_>, held: Option<u8>, [low, high]: [f32; 2]) {
         let position = decided.position;
         self.add(class, position);
@@ -407,8 +409,8 @@ impl SharedKnapsack {
         moved.chain(turned).chain(listed)
     }
 
-    /// Whether a class of the crowd was looked at closely, so that it is among [`SharedKnapsack::changed`]. One that has
-    /// items of its own may hold what it held though it was.
+    /// Whether a class of the crowd was looked at closely, so that it is among [`SharedKnapsack::changed`]. One that
+    /// has items of its own may hold what it held though it was.
     pub fn has_looked_at(&self, i: usize) -> bool {
         self.aside.is_marked(i)
     }
@@ -464,8 +466,8 @@ impl SharedKnapsack {
         }
     }
 
-    /// A bracket that the budget ends in, and the survey of the classes that it leaves to be listed: around the last λ, or
-    /// not far from there, or where a sample of the crowd says.
+    /// A bracket that the budget ends in, and the survey of the classes that it leaves to be listed: around the last λ,
+    /// or not far from there, or where a sample of the crowd says.
     fn bracket_crowd<F: Fn(usize) -> f32, M: Menus>(
         &mut self,
         crowd: &Crowd<'_, F, M>,

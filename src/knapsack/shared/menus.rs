@@ -258,8 +258,8 @@ impl<'a, M: Menus> Menu<'a, M> {
     }
 }
 
-/// Whether an item, whose `lane` it is counted from the octet's first, is better than the others in the octet, or the first
-/// of equal ones.
+/// Whether an item, whose `lane` it is counted from the octet's first, is better than the others in the octet, or the
+/// first of equal ones.
 #[inline]
 fn is_best_of(
     octet: &Octet,

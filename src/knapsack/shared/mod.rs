@@ -1,17 +1,17 @@
 //! The greedy for classes that share hulls: what a frame loop can afford.
 //!
 //! The textbook greedy sorts every step of every class by slope and takes steps while they fit. Nearly all of that
-//! order is wasted: a step matters only near the slope λ where the budget ends. So λ is *bracketed* first, from the last
-//! call's λ or from a histogram over the bits of the slopes (positive floats sort as their bits); classes take all their
-//! steps above the bracket without comparison, and only the steps inside it are sorted. The answer is that of the
+//! order is wasted: a step matters only near the slope λ where the budget ends. So λ is *bracketed* first, from the
+//! last call's λ or from a histogram over the bits of the slopes (positive floats sort as their bits); classes take all
+//! their steps above the bracket without comparison, and only the steps inside it are sorted. The answer is that of the
 //! textbook, whatever the bracket was.
 //!
 //! The objective can price switching: the steps of a class up to its current position count (1 + stay) times, the steps
 //! beyond it (1 − stay) times. That keeps slopes falling along each hull, so the greedy and its bound hold for the
 //! priced objective; the certificate of the plain one is computed beside it.
 //!
-//! Where there are many classes and most of them hold what they are going to hold, [`SharedKnapsack::solve_crowd`] looks
-//! at the others alone. Its answer is that of [`SharedKnapsack::solve`].
+//! Where there are many classes and most of them hold what they are going to hold, [`SharedKnapsack::solve_crowd`]
+//! looks at the others alone. Its answer is that of [`SharedKnapsack::solve`].
 
 mod certificate;
 mod class;
@@ -153,8 +153,9 @@ impl Critical {
         self.step.is_some() && !self.done
     }
 
-    /// Leaves the windows that end above `slope`, the last of them for good. It is done when too little of the budget is
-    /// left at the end of any: whether it is depends on nothing but λ and the steps above, not on how they were found.
+    /// Leaves the windows that end above `slope`, the last of them for good. It is done when too little of the budget
+    /// is left at the end of any: whether it is depends on nothing but λ and the steps above, not on how they were
+    /// found.
     fn descend(&mut self, slope: f32, room: u64, budget: u64) {
         while self.goes_on() && self.low() > slope {
             self.done = room <= budget / FILL_ENOUGH || self.window + 1 == FILL_WINDOWS.len();
@@ -167,8 +168,8 @@ impl Critical {
 /// a pass for the histogram and one for the survey.
 const WIDTH: std::ops::RangeInclusive<f32> = 0.01..=0.1;
 
-/// How far λ is expected to go on moving from one call to the next, as a factor. Further apart follows faster drives, and
-/// expects more of a jump.
+/// How far λ is expected to go on moving from one call to the next, as a factor. Further apart follows faster drives,
+/// and expects more of a jump.
 const DRIFT: std::ops::RangeInclusive<f32> = 0.8..=1.25;
 
 /// Histogram buckets: the 12 highest of the 31 bits of a positive float, so that a bucket spans at most 1/16 of its
@@ -176,8 +177,8 @@ const DRIFT: std::ops::RangeInclusive<f32> = 0.8..=1.25;
 const BUCKETS: usize = 1 << 12;
 const BUCKET_SHIFT: u32 = 31 - 12;
 
-/// After the first step that does not fit, others are looked for down to these fractions of its slope, a pass each. More
-/// windows find less to sort in each, and cost more passes.
+/// After the first step that does not fit, others are looked for down to these fractions of its slope, a pass each.
+/// More windows find less to sort in each, and cost more passes.
 const FILL_WINDOWS: [f32; 9] = [0.99, 0.95, 0.8, 0.5, 0.2, 0.05, 0.01, 0.001, 0.0];
 
 /// The fill stops when less than this fraction of the budget is left: it would buy less than looking costs.
@@ -195,9 +196,9 @@ impl SharedKnapsack {
     /// kept up to `budget`. The choice is then the best for the cost that is held, held between the two; the
     /// certificate stays that of `budget`. Where one item alone takes more than that, the dead band is left out.
     ///
-    /// The ½ follows Kellerer, Pferschy and Pisinger, *Knapsack Problems*, 2004, ch. 11: items that do not fit beside the
-    /// cheapest of all others are dropped before hulls are made, and the rival that takes the critical step first is
-    /// tried where it could win.
+    /// The ½ follows Kellerer, Pferschy and Pisinger, *Knapsack Problems*, 2004, ch. 11: items that do not fit beside
+    /// the cheapest of all others are dropped before hulls are made, and the rival that takes the critical step first
+    /// is tried where it could win.
     ///
     /// Time: O(positions) and a sort of the steps inside the bracket. Allocates only to grow its scratch.
     pub fn solve(&mut self, budget: u64, ease: u64, key: impl Fn(usize) -> u128) -> Outcome {
@@ -485,7 +486,8 @@ impl Bracket {
         self.lambda * self.drift
     }
 
-    /// After λ has been found: so wide that it could have been twice as far from where it was expected, and not much wider.
+    /// After λ has been found: so wide that it could have been twice as far from where it was expected, and not much
+    /// wider.
     fn follow(&mut self, lambda: f32) {
         if self.lambda > 0.0 {
             let missed = (lambda / self.expected() - 1.0).abs();

@@ -137,8 +137,8 @@ impl Profiles {
         &self.positions[start as usize..end as usize]
     }
 
-    /// When a class of scale 1 holds an item, for the items of all profiles in the order in which they were pushed, and an
-    /// open one at the end.
+    /// When a class of scale 1 holds an item, for the items of all profiles in the order in which they were pushed, and
+    /// an open one at the end.
     pub(super) fn holds(&self) -> &[Hold] {
         &self.holds
     }
@@ -171,8 +171,8 @@ impl Profiles {
         &self.items[start as usize..end as usize]
     }
 
-    /// What a class costs and is worth with `item`; `None` when its profile was not made of it. O(1) where items were given
-    /// in the order of their codes without gaps.
+    /// What a class costs and is worth with `item`; `None` when its profile was not made of it. O(1) where items were
+    /// given in the order of their codes without gaps.
     pub fn offer(&self, class: &SharedClass, item: u8) -> Option<Offer> {
         let found = self.items(class.profile)[self.item_at(class.profile, item)?];
         let benefit = f64::from(class.weight) * f64::from(found.value);

@@ -1,22 +1,23 @@
 //! Which of many classes stay where they are: a loop without branches over two columns.
 //!
 //! A class of weight w holds position p of its hull while λ · (1 / slope into p) ≤ w < λ · (1 / slope out of p). The
-//! reciprocals of all items of all profiles are kept in a table, so that whether a class is settled takes one look at its
-//! weight.
+//! reciprocals of all items of all profiles are kept in a table, so that whether a class is settled takes one look at
+//! its weight.
 
 use glam::{Mat4, Vec4};
 
 use crate::kernel::{Divisible, Kernel, run_on};
 
-/// When a class holds an item, and what that is worth to a class of weight 1. A row of four numbers, so that four classes
-/// are turned into columns by a transposition:
+/// When a class holds an item, and what that is worth to a class of weight 1. A row of four numbers, so that four
+/// classes are turned into columns by a transposition:
 /// - *keep*: the class keeps the step to the item while its weight is at least λ times this;
 /// - *rest*: it takes no further step while its weight is below λ times this;
 /// - *value* of the item, and of the cheapest item of its profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hold(Vec4);
 
-/// Reciprocals are moved outwards by more than the three roundings of single precision that slopes and comparisons take.
+/// Reciprocals are moved outwards by more than the three roundings of single precision that slopes and comparisons
+/// take.
 const OUTWARDS: f32 = 1.0e-6;
 
 impl Hold {
@@ -66,8 +67,8 @@ impl Units {
 /// Classes that are looked at together.
 const LANES: usize = 16;
 
-/// Chunks whose benefit is summed in double precision before it is carried over: so many numbers of 40 bits add up exactly
-/// in 52.
+/// Chunks whose benefit is summed in double precision before it is carried over: so many numbers of 40 bits add up
+/// exactly in 52.
 const CARRY_EVERY: usize = 1 << 12;
 const TERM_BITS: i32 = 40;
 
@@ -90,8 +91,8 @@ pub(crate) struct Columns<'a> {
     pub holds: &'a [Hold],
 }
 
-/// Finds the classes that are not settled for every λ of the bracket, a bit in `open` for each, and returns the benefit of
-/// those that are, in a unit that follows from the heaviest class.
+/// Finds the classes that are not settled for every λ of the bracket, a bit in `open` for each, and returns the benefit
+/// of those that are, in a unit that follows from the heaviest class.
 pub(crate) fn sift(columns: Columns<'_>, bracket: [f32; 2], threads: usize, open: &mut Vec<u16>) -> Units {
     open.resize(columns.weight.len().div_ceil(LANES), 0);
     let unit = unit_for(columns.heaviest);

@@ -6,8 +6,8 @@
 //!
 //! Every kind of object is made of parametric shapes (blocks, rounded blocks, cylinders, cones, spheres, tori, tubes,
 //! height fields, crowns of leaf cards), and every level says how finely it tessellates each of them, or that it leaves
-//! it out. Triangles and vertices are those of the tessellations. The error of a level is an upper bound on its two-sided
-//! deviation from level 0, by the triangle inequality through the smooth shape:
+//! it out. Triangles and vertices are those of the tessellations. The error of a level is an upper bound on its
+//! two-sided deviation from level 0, by the triangle inequality through the smooth shape:
 //!
 //! - a circle of radius r in n segments deviates by r·(1 − cos(π/n)) ≤ r·π²/(2n²), a surface of revolution by that and
 //!   its profile's deviation; a height field of cells h wide, whose second derivative is at most κ, by κh²/4; a crown
