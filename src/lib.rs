@@ -87,6 +87,7 @@
 //! | `ecs` | components and synchronisation with hecs (feature `hecs`) |
 //! | *rooms* | |
 //! | `files` | scenes, camera paths and instances from disk (feature `files`) |
+//! | `bake` | levels from meshes (feature `bake`) |
 //! | `sim` | simulated machines, trials, metrics and scenes made from a seed (feature `sim`) |
 //!
 //! # Features
@@ -141,6 +142,9 @@ pub mod ecs;
 // -- rooms, each behind a feature
 #[cfg(feature = "files")]
 pub mod files;
+
+#[cfg(feature = "bake")]
+pub mod bake;
 
 #[cfg(feature = "sim")]
 pub mod sim;
