@@ -21,8 +21,8 @@
 
 mod error;
 mod fans;
-mod frame;
 mod link;
+mod order;
 mod quadric;
 mod queue;
 

@@ -1,12 +1,12 @@
 //! The quadric error of a point: a quadratic form, which is the weighted sum of squared distances to planes.
 
-use std::ops::{Add, AddAssign};
+use std::ops::Add;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
-/// `Q(v) = vᵀAv + 2bᵀv + c`, where A is symmetric and positive semidefinite, and the area that went into it.
+/// `Q(v) = vᵀAv + 2bᵀv + c`, where A is symmetric and positive semidefinite, seen from some origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Quadric {
+pub(super) struct Form {
     /// Diagonal of A: xx, yy, zz.
     diagonal: DVec3,
     /// The rest of A: yz, zx, xy.
@@ -15,26 +15,62 @@ pub(super) struct Quadric {
     linear: DVec3,
     /// c.
     constant: f64,
-    /// Sum of the weights of planes that are part of the surface; those that only constrain do not count.
-    pub(super) area: f64,
+}
+
+/// A form as it is kept, in one cache line: seen from the vertex it belongs to.
+///
+/// A takes double precision, or squared distances would drown in rounding where triangles are small and nearly flat. The rest
+/// does not: seen from its own vertex, b and c are as small as the error itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(align(64))]
+pub(super) struct Quadric {
+    diagonal: [f64; 3],
+    mixed: [f64; 3],
+    linear: [f32; 3],
+    constant: f32,
 }
 
 impl Quadric {
-    /// `weight` times the squared distance to the plane through `point` with the unit normal `normal`.
-    pub(super) fn plane(normal: DVec3, point: DVec3, weight: f64) -> Self {
-        let distance = -normal.dot(point);
-        Self {
-            diagonal: weight * normal * normal,
-            mixed: weight * DVec3::new(normal.y * normal.z, normal.z * normal.x, normal.x * normal.y),
-            linear: weight * distance * normal,
-            constant: weight * distance * distance,
-            area: weight,
+    /// `weight` times the squared distance to the plane through the vertex with the unit normal `normal`.
+    pub(super) fn plane(normal: DVec3, weight: f64) -> Self {
+        let mixed = DVec3::new(normal.y * normal.z, normal.z * normal.x, normal.x * normal.y);
+        let diagonal = (weight * normal * normal).to_array();
+        Self { diagonal, mixed: (weight * mixed).to_array(), ..Self::default() }
+    }
+
+    #[inline]
+    pub(super) fn form(&self) -> Form {
+        Form {
+            diagonal: DVec3::from_array(self.diagonal),
+            mixed: DVec3::from_array(self.mixed),
+            linear: Vec3::from_array(self.linear).as_dvec3(),
+            constant: f64::from(self.constant),
         }
     }
 
-    /// The same, but no part of the surface.
-    pub(super) fn constraint(self) -> Self {
-        Self { area: 0.0, ..self }
+    /// Adds another that is seen from the same vertex.
+    pub(super) fn add(&mut self, other: &Self) {
+        *self = (self.form() + other.form()).pack();
+    }
+}
+
+impl Form {
+    #[inline]
+    pub(super) fn pack(&self) -> Quadric {
+        Quadric {
+            diagonal: self.diagonal.to_array(),
+            mixed: self.mixed.to_array(),
+            linear: self.linear.as_vec3().to_array(),
+            constant: self.constant as f32,
+        }
+    }
+
+    /// The same form seen from another origin.
+    #[inline]
+    pub(super) fn seen_from(&self, origin: DVec3) -> Self {
+        let along = self.times(origin);
+        let constant = self.constant + origin.dot(along + 2.0 * self.linear);
+        Self { linear: self.linear + along, constant, ..*self }
     }
 
     /// `A·v`.
@@ -66,13 +102,19 @@ impl Quadric {
         v.dot(self.times(v))
     }
 
+    /// The weight of all planes together: the trace of A.
+    #[inline]
+    pub(super) fn weight(&self) -> f64 {
+        self.diagonal.element_sum()
+    }
+
     /// The point where `Q(v) + stiffness·tr(A)·|v − near|²` is least; `None` if A is 0. Takes some 50 operations.
     ///
     /// With no stiffness that is the least of Q itself, which is no single point on planes and along straight creases
     /// and far away where they are nearly so. With a little the point does not leave `near` without a reason.
     #[inline]
     pub(super) fn least(&self, near: DVec3, stiffness: f64) -> Option<DVec3> {
-        let d = self.diagonal + stiffness * self.diagonal.element_sum();
+        let d = self.diagonal + stiffness * self.weight();
         let m = self.mixed;
         let cofactors = DVec3::new(d.y * d.z - m.x * m.x, d.z * d.x - m.y * m.y, d.x * d.y - m.z * m.z);
         let mixed = DVec3::new(m.y * m.z - m.x * d.x, m.z * m.x - m.y * d.y, m.x * m.y - m.z * d.z);
@@ -83,7 +125,7 @@ impl Quadric {
     }
 }
 
-impl Add for Quadric {
+impl Add for Form {
     type Output = Self;
 
     #[inline]
@@ -93,15 +135,7 @@ impl Add for Quadric {
             mixed: self.mixed + other.mixed,
             linear: self.linear + other.linear,
             constant: self.constant + other.constant,
-            area: self.area + other.area,
         }
-    }
-}
-
-impl AddAssign for Quadric {
-    #[inline]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
     }
 }
 
@@ -115,27 +149,42 @@ mod tests {
         [-1.0..1.0f64, -1.0..1.0, -1.0..1.0].prop_map(DVec3::from_array)
     }
 
+    /// The form of a plane through a point, seen from the origin.
+    fn plane(normal: DVec3, through: DVec3, weight: f64) -> Form {
+        Quadric::plane(normal, weight).form().seen_from(-through)
+    }
+
     proptest! {
         #[test]
-        fn the_error_is_the_sum_of_squared_distances(
+        fn the_error_is_the_sum_of_squared_distances_wherever_it_is_seen_from(
             planes in prop::collection::vec((point(), point(), 0.1..2.0f64), 1..9),
-            v in point(),
+            (v, origin) in (point(), point()),
         ) {
-            let (mut sum, mut quadric) = (0.0, Quadric::default());
+            let (mut sum, mut form) = (0.0, Form::default());
             for (normal, through, weight) in planes {
                 let normal = normal.normalize_or(DVec3::X);
                 sum += weight * normal.dot(v - through).powi(2);
-                quadric += Quadric::plane(normal, through, weight);
+                form = form + plane(normal, through, weight);
             }
-            prop_assert!((quadric.at(v) - sum).abs() < 1e-12 * (1.0 + sum));
+            let near = 1e-12 * (1.0 + sum);
+            prop_assert!((form.at(v) - sum).abs() < near);
+            prop_assert!((form.seen_from(origin).at(v - origin) - sum).abs() < near);
+        }
+
+        #[test]
+        fn a_packed_form_is_the_same_to_single_precision_of_the_error(
+            (normal, through, v) in (point(), point(), point()),
+        ) {
+            let form = plane(normal.normalize_or(DVec3::X), through * 1e-3, 1.0);
+            prop_assert!((form.pack().form().at(v) - form.at(v)).abs() < 1e-9);
         }
 
         #[test]
         fn no_point_nearby_is_lower_than_the_least(
-            corner in point(), tilt in point(), step in point(), near in point(),
+            (corner, tilt, step, near) in (point(), point(), point(), point()),
         ) {
             let normals = [DVec3::X, DVec3::Y + 0.5 * tilt, DVec3::Z - 0.5 * tilt];
-            let planes = normals.map(|n| Quadric::plane(n.normalize(), corner, 1.0));
+            let planes = normals.map(|n| plane(n.normalize(), corner, 1.0));
             let sum = planes[0] + planes[1] + planes[2];
             let least = sum.least(near, 0.0).expect("three planes meet");
             prop_assert!(sum.at(least) <= sum.at(least + step) + 1e-9);
@@ -144,15 +193,15 @@ mod tests {
 
     #[test]
     fn on_a_plane_the_least_is_the_foot_of_where_one_stands() {
-        let plane = Quadric::plane(DVec3::Z, DVec3::new(9.0, 9.0, 1.0), 3.0);
+        let plane = plane(DVec3::Z, DVec3::new(9.0, 9.0, 1.0), 3.0);
         let foot = plane.least(DVec3::new(2.0, -1.0, 1.5), 1e-6).expect("there is a plane");
         assert!(foot.distance(DVec3::new(2.0, -1.0, 1.0)) < 1e-5, "{foot}");
-        assert_eq!(Quadric::default().least(DVec3::ONE, 1e-6), None);
+        assert_eq!(Form::default().least(DVec3::ONE, 1e-6), None);
+        assert_eq!(plane.weight(), 3.0);
     }
 
     #[test]
-    fn constraints_have_no_area() {
-        let plane = Quadric::plane(DVec3::Y, DVec3::ZERO, 2.0);
-        assert_eq!((plane.area, plane.constraint().area, plane.constraint().at(DVec3::Y)), (2.0, 0.0, 2.0));
+    fn a_quadric_is_one_cache_line() {
+        assert_eq!((size_of::<Quadric>(), align_of::<Quadric>()), (64, 64));
     }
 }

@@ -4,16 +4,17 @@ use std::ops::ControlFlow;
 
 use glam::{DVec3, Vec3};
 
-use super::form::Quadric;
+use super::form::{Form, Quadric};
 use super::guard::Guard;
-use super::placement::{Spot, Vertex};
+use super::placement::Spot;
 use super::{GarlandHeckbert, Topology};
 use crate::bake::Surface;
 use crate::bake::simplify::fans::Fans;
-use crate::bake::simplify::frame::Frame;
 use crate::bake::simplify::link::{Complex, Stamps, others};
+use crate::bake::simplify::order::{along_curve, by_lowest_corner};
 use crate::bake::simplify::queue::Queue;
 use crate::bake::simplify::{Progress, Simplified, Stopped, Task};
+use crate::bounds::Aabb;
 
 /// How much the squared length of an edge adds to its cost, compared with its squared error: enough to order what is flat
 /// but for rounding, too little to matter elsewhere.
@@ -55,26 +56,34 @@ struct Choice {
 
 /// A simplification on its way. Every edge belongs to its lower end, which is in the queue with the cheapest of its edges
 /// and survives the contraction.
+///
+/// Vertices are in the order of a curve through space, not in that of the task; only [`Greedy::order`] and [`Greedy::origins`] name old ones.
 pub(super) struct Greedy<'a> {
     method: &'a GarlandHeckbert,
     task: &'a Task<'a>,
     guard: Guard,
-    frame: Frame,
-    vertices: Vec<Vertex>,
+    /// A power of two that makes places of positions, some units around.
+    scale: f64,
+    positions: Vec<Vec3>,
+    quadrics: Vec<Quadric>,
+    /// Weighted area that was contracted into each vertex.
+    areas: Vec<f32>,
     triangles: Vec<[u32; 3]>,
     fans: Fans,
     marks: Vec<u8>,
     choices: Vec<Choice>,
     queue: Queue,
     stamps: Stamps,
-    /// Per vertex, the old vertex it stems from.
+    /// Per vertex, the old vertex it was.
+    order: Vec<u32>,
+    /// Per vertex, the old vertex it stems from by now.
     origins: Vec<u32>,
     /// Per vertex, what it was contracted into, or itself.
     heirs: Vec<u32>,
     /// How many triangles there were, and are.
     from: usize,
     live: usize,
-    /// Largest squared error so far, in the frame.
+    /// Largest squared error so far, scaled.
     error: f64,
     /// The fan of a contracted vertex, in the making.
     fan: Vec<u32>,
@@ -83,29 +92,28 @@ pub(super) struct Greedy<'a> {
 impl<'a> Greedy<'a> {
     /// Sums up the quadrics and fills the queue.
     pub(super) fn new(method: &'a GarlandHeckbert, task: &'a Task) -> Self {
-        let Surface { positions, triangles } = task.surface;
-        let count = positions.len();
-        let is_triangle = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
-        let kept: Vec<usize> = (0..triangles.len()).filter(|&t| is_triangle(&triangles[t])).collect();
-        let weights: Vec<f64> = kept.iter().map(|&t| task.weight(t)).collect();
-        let triangles: Vec<[u32; 3]> = kept.into_iter().map(|t| triangles[t]).collect();
-        let frame = Frame::around(triangles.as_flattened().iter().map(|&v| positions[v as usize]));
-        let vertex = |&p| Vertex { place: frame.enter(p), quadric: Quadric::default() };
+        let Ordered { origins, triangles, weights } = Ordered::new(task);
+        let count = origins.len();
+        let positions: Vec<Vec3> = origins.iter().map(|&v| task.surface.positions[v as usize]).collect();
+        let lock = |&v: &u32| if task.is_locked(v as usize) { mark::LOCKED } else { 0 };
         let mut greedy = Self {
             method,
             task,
             guard: Guard::new(method.least_turn, method.least_shape),
-            frame,
-            vertices: positions.iter().map(vertex).collect(),
+            scale: scale_of(&positions),
+            positions,
+            quadrics: vec![Quadric::default(); count],
+            areas: vec![0.0; count],
             fans: Fans::new(count, &triangles),
             from: triangles.len(),
             live: triangles.len(),
             triangles,
-            marks: (0..count).map(|v| if task.is_locked(v) { mark::LOCKED } else { 0 }).collect(),
+            marks: origins.iter().map(lock).collect(),
             choices: vec![Choice::default(); count],
             queue: Queue::new(),
             stamps: Stamps::new(count),
-            origins: (0..count as u32).collect(),
+            order: origins.clone(),
+            origins,
             heirs: (0..count as u32).collect(),
             error: 0.0,
             fan: Vec::new(),
@@ -115,16 +123,23 @@ impl<'a> Greedy<'a> {
         greedy
     }
 
+    #[inline]
+    fn place(&self, vertex: u32) -> DVec3 {
+        self.positions[vertex as usize].as_dvec3() * self.scale
+    }
+
     /// Gives every vertex the quadrics of its triangles and borders, and marks the borders.
     fn sum_up(&mut self, weights: &[f64]) {
         for (t, &weight) in weights.iter().enumerate() {
             let corners = self.triangles[t];
-            let [a, b, c] = corners.map(|v| self.vertices[v as usize].place);
+            let [a, b, c] = corners.map(|v| self.place(v));
             let across = (b - a).cross(c - a);
             let normal = across.normalize_or_zero();
-            let plane = Quadric::plane(normal, a, 0.5 * weight * across.length());
+            let area = 0.5 * weight * across.length();
+            let plane = Quadric::plane(normal, area);
             for corner in corners {
-                self.vertices[corner as usize].quadric += plane;
+                self.quadrics[corner as usize].add(&plane);
+                self.areas[corner as usize] += area as f32;
             }
             for (from, to) in [(0, 1), (1, 2), (2, 0)] {
                 let complex = Complex { triangles: &self.triangles, fans: &self.fans };
@@ -137,12 +152,11 @@ impl<'a> Greedy<'a> {
 
     /// Holds both ends of a border to the plane through it that stands upright on its triangle.
     fn hold_border(&mut self, ends: [u32; 2], normal: DVec3, weight: f64) {
-        let [a, b] = ends.map(|v| self.vertices[v as usize].place);
-        let upright = normal.cross(b - a).normalize_or_zero();
-        let weight = weight * f64::from(self.method.border) * a.distance_squared(b);
-        let plane = Quadric::plane(upright, a, weight).constraint();
+        let edge = self.place(ends[1]) - self.place(ends[0]);
+        let upright = normal.cross(edge).normalize_or_zero();
+        let plane = Quadric::plane(upright, weight * f64::from(self.method.border) * edge.length_squared());
         for end in ends {
-            self.vertices[end as usize].quadric += plane;
+            self.quadrics[end as usize].add(&plane);
             self.marks[end as usize] |= mark::BORDER;
         }
     }
@@ -194,28 +208,53 @@ impl<'a> Greedy<'a> {
             return false;
         }
         let choice = self.choices[vertex as usize];
-        let (a, b) = (&self.vertices[vertex as usize], &self.vertices[choice.partner as usize]);
-        let sum = a.quadric + b.quadric;
-        let spot = self.spot(vertex, choice.partner, &sum);
-        let error = if sum.area > 0.0 { spot.error / sum.area } else { 0.0 };
-        if !self.may_contract(vertex, choice.partner, spot.place, error) {
-            self.choose(vertex, Some(choice));
-            return false;
+        let step = self.step(vertex, choice.partner);
+        let may = self.may_contract(&step);
+        if may {
+            self.contract(&step)
+        } else {
+            self.choose(vertex, Some(choice))
         }
-        self.error = self.error.max(error);
-        self.contract(vertex, choice.partner, Vertex { place: spot.place, quadric: sum });
-        true
+        may
     }
 
-    /// Where the contraction of two vertices goes.
+    /// What contracting two vertices means.
+    fn step(&self, kept: u32, gone: u32) -> Step {
+        let edge = self.place(gone) - self.place(kept);
+        let sum = self.sum(kept, gone, edge);
+        let spot = self.spot(kept, gone, edge, &sum);
+        let area = f64::from(self.areas[kept as usize] + self.areas[gone as usize]);
+        let position = if spot.place == DVec3::ZERO {
+            self.positions[kept as usize]
+        } else if spot.place == edge {
+            self.positions[gone as usize]
+        } else {
+            ((self.place(kept) + spot.place) / self.scale).as_vec3()
+        };
+        let moved = position.as_dvec3() * self.scale - self.place(kept);
+        let error = if area > 0.0 { spot.error / area } else { 0.0 };
+        Step { kept, gone, position, quadric: sum.seen_from(moved).pack(), error }
+    }
+
+    /// The error of both ends of an edge, seen from the first.
     #[inline]
-    fn spot(&self, a: u32, b: u32, sum: &Quadric) -> Spot {
+    fn sum(&self, a: u32, b: u32, edge: DVec3) -> Form {
+        self.quadrics[a as usize].form() + self.quadrics[b as usize].form().seen_from(-edge)
+    }
+
+    /// Where the contraction of two vertices goes, seen from the first.
+    #[inline]
+    fn spot(&self, a: u32, b: u32, edge: DVec3, sum: &Form) -> Spot {
         let is_locked = |v: u32| self.marks[v as usize] & mark::LOCKED != 0;
-        let (from, to) = (&self.vertices[a as usize], &self.vertices[b as usize]);
+        let area = |v: u32| f64::from(self.areas[v as usize]);
+        let share = || {
+            let share = area(b) / (area(a) + area(b));
+            if share.is_finite() { share } else { 0.5 }
+        };
         match (is_locked(a), is_locked(b)) {
-            (false, false) => self.method.placement.spot(from, to, sum),
-            (true, _) => Spot::new(from.place, sum),
-            (_, true) => Spot::new(to.place, sum),
+            (false, false) => self.method.placement.spot(edge, share, sum),
+            (true, _) => Spot::new(DVec3::ZERO, sum),
+            (_, true) => Spot::new(edge, sum),
         }
     }
 
@@ -253,52 +292,61 @@ impl<'a> Greedy<'a> {
         cheapest
     }
 
-    /// What contracting two vertices costs, in the frame's units to the fourth.
+    /// What contracting two vertices costs, in places to the fourth.
     #[inline]
     fn cost(&self, a: u32, b: u32) -> f32 {
-        let (from, to) = (&self.vertices[a as usize], &self.vertices[b as usize]);
-        let sum = from.quadric + to.quadric;
-        let length = from.place.distance_squared(to.place);
-        (self.spot(a, b, &sum).error + SHORTER_FIRST * sum.area * length) as f32
+        let edge = self.place(b) - self.place(a);
+        let sum = self.sum(a, b, edge);
+        let spread = SHORTER_FIRST * sum.weight() * edge.length_squared();
+        (self.spot(a, b, edge, &sum).error + spread) as f32
     }
 
-    /// Whether two vertices may be contracted to a place, at a squared error.
-    fn may_contract(&mut self, a: u32, b: u32, to: DVec3, error: f64) -> bool {
-        let both = self.marks[a as usize] & self.marks[b as usize];
+    /// Whether a step is allowed.
+    fn may_contract(&mut self, step: &Step) -> bool {
+        let &Step { kept, gone, position, error, .. } = step;
+        let to = position.as_dvec3() * self.scale;
+        let both = self.marks[kept as usize] & self.marks[gone as usize];
         let keeps_topology = |stamps: &mut Stamps| {
             let complex = Complex { triangles: &self.triangles, fans: &self.fans };
-            complex.may_contract(a, b, both & mark::BORDER != 0, stamps)
+            complex.may_contract(kept, gone, both & mark::BORDER != 0, stamps)
         };
         both & mark::LOCKED == 0
-            && self.frame.leave_length(error.sqrt()) <= self.task.target.error
-            && self.fans.of(a).len() + self.fans.of(b).len() <= LARGEST_FAN
-            && self.guard_allows(a, b, to)
-            && self.guard_allows(b, a, to)
+            && self.in_units(error) <= self.task.target.error
+            && self.fans.of(kept).len() + self.fans.of(gone).len() <= LARGEST_FAN
+            && self.guard_allows(kept, gone, to)
+            && self.guard_allows(gone, kept, to)
             && (self.method.topology == Topology::Free || keeps_topology(&mut self.stamps))
+    }
+
+    /// The distance, in object units, of a squared one between places.
+    fn in_units(&self, squared: f64) -> f32 {
+        (squared.sqrt() / self.scale) as f32
     }
 
     /// Whether the triangles of a vertex, but for those that go with the edge to `other`, may follow it.
     fn guard_allows(&self, vertex: u32, other: u32, to: DVec3) -> bool {
-        let place = |v: u32| self.vertices[v as usize].place;
-        let from = place(vertex);
+        let from = self.place(vertex);
         self.fans.of(vertex).iter().all(|&t| {
             let [p, q] = others(self.triangles[t as usize], vertex);
-            p == other || q == other || self.guard.allows(from, to, place(p), place(q))
+            p == other || q == other || self.guard.allows(from, to, self.place(p), self.place(q))
         })
     }
 
-    /// Contracts `gone` into `kept`, which is the lower.
-    fn contract(&mut self, kept: u32, gone: u32, merged: Vertex) {
-        if merged.place == self.vertices[gone as usize].place {
-            self.origins[kept as usize] = self.origins[gone as usize];
+    /// Contracts `gone` into `kept`.
+    fn contract(&mut self, step: &Step) {
+        let (kept, gone) = (step.kept as usize, step.gone as usize);
+        if step.position == self.positions[gone] {
+            self.origins[kept] = self.origins[gone];
         }
-        self.vertices[kept as usize] = merged;
-        self.heirs[gone as usize] = kept;
-        let inherited = self.marks[gone as usize] & (mark::BORDER | mark::LOCKED);
-        self.marks[kept as usize] |= inherited;
-        self.merge_fans(kept, gone);
-        self.marks[gone as usize] = mark::GONE;
-        self.choose(kept, None);
+        self.positions[kept] = step.position;
+        self.quadrics[kept] = step.quadric;
+        self.areas[kept] += self.areas[gone];
+        self.error = self.error.max(step.error);
+        self.heirs[gone] = step.kept;
+        self.marks[kept] |= self.marks[gone] & (mark::BORDER | mark::LOCKED);
+        self.merge_fans(step.kept, step.gone);
+        self.marks[gone] = mark::GONE;
+        self.choose(step.kept, None);
     }
 
     /// Gives `kept` the triangles of both but for those at the edge, which go.
@@ -366,36 +414,82 @@ impl<'a> Greedy<'a> {
     /// What is left.
     pub(super) fn finish(mut self, stopped: Stopped) -> Simplified {
         self.triangles.retain(|&t| t != GONE);
-        let mut new = vec![Simplified::GONE; self.marks.len()];
+        let count = self.positions.len();
+        let mut new = vec![Simplified::GONE; count];
         for &corner in self.triangles.as_flattened() {
             new[corner as usize] = 0;
         }
-        let kept: Vec<u32> = (0..new.len() as u32).filter(|&v| new[v as usize] == 0).collect();
+        let kept: Vec<usize> = (0..count).filter(|&v| new[v] == 0).collect();
         for (index, &vertex) in (0..).zip(&kept) {
-            new[vertex as usize] = index;
+            new[vertex] = index;
         }
-        let heirs =
-            heirs(std::mem::take(&mut self.heirs)).into_iter().map(|heir| new[heir as usize]).collect();
         let surface = Surface {
-            positions: kept.iter().map(|&v| self.position(v)).collect(),
+            positions: kept.iter().map(|&v| self.positions[v]).collect(),
             triangles: self.triangles.iter().map(|t| t.map(|v| new[v as usize])).collect(),
         };
-        let origins = kept.iter().map(|&v| self.origins[v as usize]).collect();
-        let error = self.frame.leave_length(self.error.sqrt());
-        Simplified { surface, origins, heirs, error, stopped }
+        let origins = kept.iter().map(|&v| self.origins[v]).collect();
+        let error = self.in_units(self.error);
+        Simplified { surface, origins, heirs: self.old_heirs(&new), error, stopped }
     }
 
-    fn position(&self, vertex: u32) -> Vec3 {
-        let place = self.vertices[vertex as usize].place;
-        let origin = self.task.surface.positions[self.origins[vertex as usize] as usize];
-        if self.frame.enter(origin) == place { origin } else { self.frame.leave(place) }
+    /// Per old vertex, the new index of its last heir.
+    fn old_heirs(mut self, new: &[u32]) -> Vec<u32> {
+        let mut heirs = vec![Simplified::GONE; self.task.surface.positions.len()];
+        for (vertex, old) in self.order.into_iter().enumerate() {
+            // An heir is lower, so its own is known already.
+            self.heirs[vertex] = self.heirs[self.heirs[vertex] as usize];
+            heirs[old as usize] = new[self.heirs[vertex] as usize];
+        }
+        heirs
     }
 }
 
-/// Per vertex the last of its heirs, from per vertex the next: each has a lower index.
-fn heirs(mut next: Vec<u32>) -> Vec<u32> {
-    for vertex in 0..next.len() {
-        next[vertex] = next[next[vertex] as usize];
+/// What contracting two vertices means.
+struct Step {
+    kept: u32,
+    gone: u32,
+    /// Where they go, in object units, and the error that is seen from there.
+    position: Vec3,
+    quadric: Quadric,
+    /// Mean squared distance to the planes contracted so far, scaled.
+    error: f64,
+}
+
+/// The triangles of a task in an order that keeps neighbours together, those that use a vertex twice left out.
+struct Ordered {
+    /// Per vertex that is used, its old index.
+    origins: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+    /// Per triangle, 1 at most.
+    weights: Vec<f64>,
+}
+
+impl Ordered {
+    fn new(task: &Task) -> Self {
+        let old = &task.surface.triangles;
+        let is_triangle = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+        let kept: Vec<u32> = (0..old.len() as u32).filter(|&t| is_triangle(&old[t as usize])).collect();
+        let origins = along_curve(&task.surface.positions, kept.iter().map(|&t| old[t as usize]));
+        let mut new = vec![0; task.surface.positions.len()];
+        for (index, &vertex) in (0..).zip(&origins) {
+            new[vertex as usize] = index;
+        }
+        let unsorted: Vec<[u32; 3]> =
+            kept.iter().map(|&t| old[t as usize].map(|v| new[v as usize])).collect();
+        let order = by_lowest_corner(&unsorted, origins.len());
+        let most = task.weights.iter().fold(0.0, |most: f32, &w| most.max(w));
+        let scale = if most > 0.0 { 1.0 / f64::from(most) } else { 1.0 };
+        Self {
+            triangles: order.iter().map(|&i| unsorted[i as usize]).collect(),
+            weights: order.iter().map(|&i| task.weight(kept[i as usize] as usize) * scale).collect(),
+            origins,
+        }
     }
-    next
+}
+
+/// The power of two that scales the box around the positions to a longest side between ½ and 1; 1 for a point.
+fn scale_of(positions: &[Vec3]) -> f64 {
+    let bounds = Aabb::around(positions.iter().copied());
+    let extent = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).max_element();
+    if extent > 0.0 { (-extent.log2().ceil()).exp2() } else { 1.0 }
 }
