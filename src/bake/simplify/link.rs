@@ -25,10 +25,9 @@ impl Stamps {
         }
     }
 
-    /// Adds a vertex, and says whether it is new.
     #[inline]
-    pub(super) fn insert(&mut self, vertex: u32) -> bool {
-        std::mem::replace(&mut self.stamps[vertex as usize], self.now) != self.now
+    fn insert(&mut self, vertex: u32) {
+        self.stamps[vertex as usize] = self.now;
     }
 
     #[inline]
@@ -36,9 +35,13 @@ impl Stamps {
         self.stamps[vertex as usize] == self.now
     }
 
-    /// Takes a vertex out.
-    fn remove(&mut self, vertex: u32) {
-        self.stamps[vertex as usize] = 0;
+    /// Takes a vertex out, and says whether it was in.
+    #[inline]
+    fn take(&mut self, vertex: u32) -> bool {
+        let stamp = &mut self.stamps[vertex as usize];
+        let is_in = *stamp == self.now;
+        *stamp = if is_in { 0 } else { *stamp };
+        is_in
     }
 }
 
@@ -84,30 +87,27 @@ impl Complex<'_> {
         for [p, q] in self.ring(a) {
             stamps.insert(p);
             stamps.insert(q);
-            if p == b || q == b {
-                at_edge += 1;
-                last = if p == b { q } else { p };
-            }
+            at_edge += usize::from((p == b) | (q == b));
+            last = if p == b { q } else { last };
+            last = if q == b { p } else { last };
         }
         let closes_border = at_border && at_edge == 2;
         let is_alone = at_edge == 1 && self.triangles_at(a, last) == 1 && self.triangles_at(b, last) == 1;
         at_edge > 0 && !closes_border && !is_alone && self.shares_only(a, b, at_edge, stamps)
     }
 
-    /// Whether `a`, whose neighbours are stamped, and `b` share so many neighbours and no side of a triangle.
+    /// Whether `a`, whose neighbours are stamped, and `b` share so many neighbours and no side of a triangle. Without
+    /// branches but for the rare: nobody can predict them.
     fn shares_only(self, a: u32, b: u32, neighbours: usize, stamps: &mut Stamps) -> bool {
-        let shares_side = |[p, q]: [u32; 2]| {
-            p != a && q != a && stamps.contains(p) && stamps.contains(q) && self.has_side(a, p, q)
-        };
-        if self.ring(b).any(shares_side) {
-            return false;
+        for [p, q] in self.ring(b) {
+            let may_share_side = (p != a) & (q != a) & stamps.contains(p) & stamps.contains(q);
+            if may_share_side && self.has_side(a, p, q) {
+                return false;
+            }
         }
         let mut shared = 0;
-        for corner in self.ring(b).flatten().filter(|&c| c != a) {
-            if stamps.contains(corner) {
-                stamps.remove(corner);
-                shared += 1;
-            }
+        for [p, q] in self.ring(b) {
+            shared += usize::from((p != a) & stamps.take(p)) + usize::from((q != a) & stamps.take(q));
         }
         shared == neighbours
     }

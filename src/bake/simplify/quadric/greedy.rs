@@ -41,17 +41,40 @@ mod mark {
     pub const DIRTY: u8 = 2;
     /// It has no choice and is not in the queue.
     pub const IDLE: u8 = 4;
+    /// Something cheaper than its choice, or all it had, was refused.
+    pub const SETTLED: u8 = 64;
     /// It must stay where it is.
     pub const LOCKED: u8 = 8;
     /// It is on an edge that has not exactly two triangles.
     pub const BORDER: u8 = 16;
+    /// It is on an edge that does not have as many triangles in either direction.
+    pub const ODD: u8 = 32;
+    /// What a vertex has from those that are contracted into it.
+    pub const INHERITED: u8 = LOCKED | BORDER | ODD;
 }
 
-/// The cheapest contraction of a vertex, with one of higher index.
-#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
-struct Choice {
-    cost: f32,
-    partner: u32,
+/// A contraction of a vertex, with one of higher index: the bits of its cost, then the partner, so that whole numbers
+/// order them by cost and then by partner.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct Choice(u64);
+
+impl Choice {
+    /// The choice after all others.
+    const NONE: Self = Self(u64::MAX);
+
+    /// A cost that is not a number comes last.
+    #[inline]
+    fn new(cost: f32, partner: u32) -> Self {
+        Self(u64::from(cost.abs().to_bits()) << 32 | u64::from(partner))
+    }
+
+    fn cost(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+
+    fn partner(self) -> u32 {
+        self.0 as u32
+    }
 }
 
 /// A simplification on its way. Every edge belongs to its lower end, which is in the queue with the cheapest of its edges
@@ -87,6 +110,8 @@ pub(super) struct Greedy<'a> {
     error: f64,
     /// The fan of a contracted vertex, in the making.
     fan: Vec<u32>,
+    /// What a vertex may be contracted with.
+    partners: Vec<u32>,
 }
 
 impl<'a> Greedy<'a> {
@@ -117,6 +142,7 @@ impl<'a> Greedy<'a> {
             heirs: (0..count as u32).collect(),
             error: 0.0,
             fan: Vec::new(),
+            partners: Vec::new(),
         };
         greedy.sum_up(&weights);
         greedy.sweep();
@@ -141,24 +167,49 @@ impl<'a> Greedy<'a> {
                 self.quadrics[corner as usize].add(&plane);
                 self.areas[corner as usize] += area as f32;
             }
-            for (from, to) in [(0, 1), (1, 2), (2, 0)] {
-                let complex = Complex { triangles: &self.triangles, fans: &self.fans };
-                if complex.triangles_at(corners[from], corners[to]) != 2 {
-                    self.hold_border([corners[from], corners[to]], normal, weight);
+        }
+        let mut uses = vec![0u64; self.positions.len()];
+        for vertex in 0..self.positions.len() as u32 {
+            self.find_borders(vertex, weights, &mut uses);
+        }
+    }
+
+    /// Marks a vertex that has borders, and holds it to them. `uses` is 0 everywhere, and has room for counts: per neighbour
+    /// of triangles that lead to it, and 2³² times those that come from it.
+    fn find_borders(&mut self, vertex: u32, weights: &[f64], uses: &mut [u64]) {
+        const PLAIN: u64 = 1 << 32 | 1;
+        for &triangle in self.fans.of(vertex) {
+            let [p, q] = others(self.triangles[triangle as usize], vertex);
+            uses[p as usize] += 1;
+            uses[q as usize] += 1 << 32;
+        }
+        for i in 0..self.fans.of(vertex).len() {
+            let triangle = self.fans.of(vertex)[i] as usize;
+            for neighbour in others(self.triangles[triangle], vertex) {
+                let (to, from) = (uses[neighbour as usize] as u32, (uses[neighbour as usize] >> 32) as u32);
+                if uses[neighbour as usize] != PLAIN {
+                    self.marks[vertex as usize] |= if to != from { mark::ODD } else { 0 };
+                    self.marks[vertex as usize] |= if to + from != 2 { mark::BORDER } else { 0 };
                 }
+                if to + from != 2 {
+                    self.hold_border(vertex, neighbour, triangle, weights[triangle]);
+                }
+            }
+        }
+        for &triangle in self.fans.of(vertex) {
+            for neighbour in others(self.triangles[triangle as usize], vertex) {
+                uses[neighbour as usize] = 0;
             }
         }
     }
 
-    /// Holds both ends of a border to the plane through it that stands upright on its triangle.
-    fn hold_border(&mut self, ends: [u32; 2], normal: DVec3, weight: f64) {
-        let edge = self.place(ends[1]) - self.place(ends[0]);
-        let upright = normal.cross(edge).normalize_or_zero();
+    /// Holds one end of a border of a triangle to the plane through it that stands upright on the triangle.
+    fn hold_border(&mut self, vertex: u32, neighbour: u32, triangle: usize, weight: f64) {
+        let [a, b, c] = self.triangles[triangle].map(|v| self.place(v));
+        let edge = self.place(neighbour) - self.place(vertex);
+        let upright = (b - a).cross(c - a).cross(edge).normalize_or_zero();
         let plane = Quadric::plane(upright, weight * f64::from(self.method.border) * edge.length_squared());
-        for end in ends {
-            self.quadrics[end as usize].add(&plane);
-            self.marks[end as usize] |= mark::BORDER;
-        }
+        self.quadrics[vertex as usize].add(&plane);
     }
 
     /// Puts every vertex into the queue that is not there; returns how many are.
@@ -208,7 +259,7 @@ impl<'a> Greedy<'a> {
             return false;
         }
         let choice = self.choices[vertex as usize];
-        let step = self.step(vertex, choice.partner);
+        let step = self.step(vertex, choice.partner());
         let may = self.may_contract(&step);
         if may {
             self.contract(&step)
@@ -260,35 +311,41 @@ impl<'a> Greedy<'a> {
 
     /// Chooses the cheapest contraction of a vertex above that one, and puts it into the queue.
     fn choose(&mut self, vertex: u32, above: Option<Choice>) {
+        let choice = self.cheapest(vertex, above.map_or(Choice(0), |Choice(c)| Choice(c + 1)));
         let marks = &mut self.marks[vertex as usize];
-        *marks &= !mark::IDLE;
-        match self.cheapest(vertex, above) {
-            Some(choice) => {
-                self.choices[vertex as usize] = choice;
-                self.queue.push(choice.cost, vertex);
-            }
-            None => self.marks[vertex as usize] |= mark::IDLE,
+        *marks &= !(mark::IDLE | mark::SETTLED);
+        *marks |= if above.is_some() { mark::SETTLED } else { 0 };
+        if choice == Choice::NONE {
+            *marks |= mark::IDLE;
+            return;
         }
+        self.choices[vertex as usize] = choice;
+        self.queue.push(choice.cost(), vertex);
     }
 
-    fn cheapest(&mut self, vertex: u32, above: Option<Choice>) -> Option<Choice> {
+    /// The cheapest contraction of a vertex from that one on.
+    ///
+    /// Where every edge has as many triangles in either direction it is enough to look at one corner of each.
+    fn cheapest(&mut self, vertex: u32, from: Choice) -> Choice {
         let fan = self.fans.of(vertex);
         if fan.len() > LARGEST_FAN {
-            return None;
+            return Choice::NONE;
         }
-        let mut cheapest: Option<Choice> = None;
-        self.stamps.clear();
-        for &triangle in fan {
-            for partner in others(self.triangles[triangle as usize], vertex) {
-                if partner < vertex || !self.stamps.insert(partner) {
-                    continue;
-                }
-                let choice = Choice { cost: self.cost(vertex, partner), partner };
-                if above.is_none_or(|a| choice > a) && cheapest.is_none_or(|c| choice < c) {
-                    cheapest = Some(choice);
-                }
-            }
+        let is_odd = self.marks[vertex as usize] & mark::ODD != 0;
+        let mut partners = std::mem::take(&mut self.partners);
+        partners.clear();
+        let sides = fan.iter().map(|&t| others(self.triangles[t as usize], vertex));
+        if is_odd {
+            partners.extend(sides.flatten().filter(|&p| p > vertex));
+        } else {
+            partners.extend(sides.map(|[p, _]| p).filter(|&p| p > vertex));
         }
+        let mut cheapest = Choice::NONE;
+        for &partner in &partners {
+            let choice = Choice::new(self.cost(vertex, partner), partner);
+            cheapest = if choice >= from { cheapest.min(choice) } else { cheapest };
+        }
+        self.partners = partners;
         cheapest
     }
 
@@ -343,7 +400,7 @@ impl<'a> Greedy<'a> {
         self.areas[kept] += self.areas[gone];
         self.error = self.error.max(step.error);
         self.heirs[gone] = step.kept;
-        self.marks[kept] |= self.marks[gone] & (mark::BORDER | mark::LOCKED);
+        self.marks[kept] |= self.marks[gone] & mark::INHERITED;
         self.merge_fans(step.kept, step.gone);
         self.marks[gone] = mark::GONE;
         self.choose(step.kept, None);
@@ -370,27 +427,20 @@ impl<'a> Greedy<'a> {
         self.fan = fan;
     }
 
-    /// Whether a triangle of `kept` stays one. Disturbs the neighbours that own edges to `kept`.
+    /// Whether a triangle of `kept` stays one.
     fn keeps(&mut self, triangle: u32, kept: u32, gone: u32) -> bool {
         let [p, q] = others(self.triangles[triangle as usize], kept);
-        for corner in [p, q] {
-            if corner < kept {
-                self.disturb(corner);
-            }
-        }
-        p != gone && q != gone
+        self.disturb(p, kept, gone);
+        self.disturb(q, kept, gone);
+        (p != gone) & (q != gone)
     }
 
-    /// Makes a triangle of `gone` one of `kept`, or removes it; returns whether it stays. Disturbs the neighbours that own
-    /// edges to `gone`.
+    /// Makes a triangle of `gone` one of `kept`, or removes it; returns whether it stays.
     fn hand_over(&mut self, triangle: u32, kept: u32, gone: u32) -> bool {
         let [p, q] = others(self.triangles[triangle as usize], gone);
-        let goes = p == kept || q == kept;
-        for corner in [p, q] {
-            if corner != kept && (corner < gone || goes) {
-                self.disturb(corner);
-            }
-        }
+        let goes = (p == kept) | (q == kept);
+        self.disturb(p, kept, gone);
+        self.disturb(q, kept, gone);
         if goes {
             self.live -= 1;
             self.triangles[triangle as usize] = GONE;
@@ -401,13 +451,18 @@ impl<'a> Greedy<'a> {
         !goes
     }
 
-    /// Has a vertex choose again, when its turn comes.
-    fn disturb(&mut self, vertex: u32) {
+    /// Has a neighbour of a contraction choose again, when its turn comes, if its choice is one of the two or if it had
+    /// to settle for one. Any other choice is still its cheapest, since what has changed only became dearer.
+    #[inline]
+    fn disturb(&mut self, vertex: u32, kept: u32, gone: u32) {
         let marks = &mut self.marks[vertex as usize];
-        *marks |= mark::DIRTY;
-        if *marks & mark::IDLE != 0 {
+        let choice = self.choices[vertex as usize];
+        let is_meant =
+            (choice.partner() == kept) | (choice.partner() == gone) | (*marks & mark::SETTLED != 0);
+        *marks |= mark::DIRTY * u8::from(is_meant);
+        if *marks & (mark::IDLE | mark::DIRTY) == mark::IDLE | mark::DIRTY {
             *marks &= !mark::IDLE;
-            self.queue.push(self.choices[vertex as usize].cost, vertex);
+            self.queue.push(choice.cost(), vertex);
         }
     }
 

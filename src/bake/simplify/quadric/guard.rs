@@ -21,15 +21,15 @@ impl Guard {
     /// area may become anything.
     #[inline]
     pub(super) fn allows(&self, from: DVec3, to: DVec3, p: DVec3, q: DVec3) -> bool {
-        let (side, before, after) = (q - p, (p - from).cross(q - from), (p - to).cross(q - to));
+        let (side, old, new) = (q - p, p - from, p - to);
+        let (before, after) = (old.cross(side), new.cross(side));
         let (turn, sizes) = (before.dot(after), (before.length_squared(), after.length_squared()));
-        let sides =
-            |corner: DVec3| side.length_squared() + corner.distance_squared(p) + corner.distance_squared(q);
-        let keeps_direction = turn > 0.0 && turn * turn >= self.turn * sizes.0 * sizes.1;
-        let (old, new) = (sides(from), sides(to));
-        let is_shapely = || 12.0 * sizes.1 >= self.shape * new * new;
-        let was_worse = || sizes.1 * old * old >= sizes.0 * new * new;
-        sizes.0 == 0.0 || keeps_direction && (is_shapely() || was_worse())
+        let keeps_direction = (turn > 0.0) & (turn * turn >= self.turn * sizes.0 * sizes.1);
+        let sides = |a: DVec3| side.length_squared() + a.length_squared() + (a + side).length_squared();
+        let spread = sides(new);
+        let is_shapely = 12.0 * sizes.1 >= self.shape * spread * spread;
+        let was_worse = || sizes.1 * sides(old).powi(2) >= sizes.0 * spread * spread;
+        keeps_direction && (is_shapely || was_worse()) || sizes.0 == 0.0
     }
 }
 
