@@ -32,7 +32,7 @@ pub enum Topology {
     Free,
 }
 
-/// Edge contraction by quadric error: the best of the methods in most respects, at about 1.5 µs per triangle that goes.
+/// Edge contraction by quadric error: the best of the methods in most respects, at some 2 µs per triangle that goes.
 ///
 /// Do not take it for foliage, where what counts is how much of the view is covered.
 #[derive(Clone, Copy, Debug, PartialEq)]
