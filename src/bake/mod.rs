@@ -8,6 +8,8 @@
 //! | [`weld`] | positions that are the same become one |
 //! | [`repair`] | what is wrong with a mesh, and what can be put right safely |
 //! | [`finding`] | what readers and repair have to report |
+//! | [`simplify`] | fewer triangles: the methods behind one interface |
+//! | [`shapes`] | meshes to try it on |
 //! | [`deviation`] | how far two surfaces are apart, as a bound that is proved |
 
 pub mod deviation;
@@ -15,6 +17,8 @@ pub mod finding;
 pub mod mesh;
 pub mod read;
 pub mod repair;
+pub mod shapes;
+pub mod simplify;
 pub mod surface;
 pub mod weld;
 

@@ -1,0 +1,119 @@
+//! The link condition: which edges may be contracted without changing the topology.
+//!
+//! T. K. Dey, H. Edelsbrunner, S. Guha, D. V. Nekhayev, "Topology preserving edge contraction", 1999.
+
+use super::fans::Fans;
+
+/// A set of vertices that is emptied in no time.
+pub(super) struct Stamps {
+    stamps: Vec<u32>,
+    now: u32,
+}
+
+impl Stamps {
+    pub(super) fn new(vertices: usize) -> Self {
+        Self { stamps: vec![0; vertices], now: 0 }
+    }
+
+    /// Empties the set.
+    #[inline]
+    pub(super) fn clear(&mut self) {
+        self.now = self.now.wrapping_add(1);
+        if self.now == 0 {
+            self.stamps.fill(0);
+            self.now = 1;
+        }
+    }
+
+    #[inline]
+    fn insert(&mut self, vertex: u32) {
+        self.stamps[vertex as usize] = self.now;
+    }
+
+    #[inline]
+    fn contains(&self, vertex: u32) -> bool {
+        self.stamps[vertex as usize] == self.now
+    }
+
+    /// Takes a vertex out, and says whether it was in.
+    #[inline]
+    fn take(&mut self, vertex: u32) -> bool {
+        let stamp = &mut self.stamps[vertex as usize];
+        let is_in = *stamp == self.now;
+        *stamp = if is_in { 0 } else { *stamp };
+        is_in
+    }
+}
+
+/// The two corners of a triangle that are not `vertex`, in its direction.
+#[inline]
+pub(super) fn others(triangle: [u32; 3], vertex: u32) -> [u32; 2] {
+    let [a, b, c] = triangle;
+    if a == vertex {
+        [b, c]
+    } else if b == vertex {
+        [c, a]
+    } else {
+        [a, b]
+    }
+}
+
+/// Triangles and the fans of their vertices.
+#[derive(Clone, Copy)]
+pub(super) struct Complex<'a> {
+    pub(super) triangles: &'a [[u32; 3]],
+    pub(super) fans: &'a Fans,
+}
+
+impl Complex<'_> {
+    fn ring(self, vertex: u32) -> impl Iterator<Item = [u32; 2]> {
+        self.fans.of(vertex).iter().map(move |&t| others(self.triangles[t as usize], vertex))
+    }
+
+    /// How many triangles use both. Walks around the one that has fewer.
+    pub(super) fn triangles_at(self, a: u32, b: u32) -> usize {
+        let (a, b) = if self.fans.of(b).len() < self.fans.of(a).len() { (b, a) } else { (a, b) };
+        self.ring(a).filter(|pair| pair.contains(&b)).count()
+    }
+
+    /// Whether contracting `a` and `b` keeps the topology. `at_border` says that both are on edges that have not
+    /// exactly two triangles. Costs as much as a walk around both.
+    ///
+    /// The neighbours that both have must be the far corners of the triangles at the edge, no two of them may make a
+    /// triangle with each, and the edge itself must be at the border if both ends are.
+    pub(super) fn may_contract(self, a: u32, b: u32, at_border: bool, stamps: &mut Stamps) -> bool {
+        let (mut at_edge, mut last) = (0, a);
+        stamps.clear();
+        for [p, q] in self.ring(a) {
+            stamps.insert(p);
+            stamps.insert(q);
+            at_edge += usize::from((p == b) | (q == b));
+            last = if p == b { q } else { last };
+            last = if q == b { p } else { last };
+        }
+        let closes_border = at_border && at_edge == 2;
+        let is_alone = at_edge == 1 && self.triangles_at(a, last) == 1 && self.triangles_at(b, last) == 1;
+        at_edge > 0 && !closes_border && !is_alone && self.shares_only(a, b, at_edge, stamps)
+    }
+
+    /// Whether `a`, whose neighbours are stamped, and `b` share so many neighbours and no side of a triangle. Without
+    /// branches but for the rare: nobody can predict them.
+    fn shares_only(self, a: u32, b: u32, neighbours: usize, stamps: &mut Stamps) -> bool {
+        for [p, q] in self.ring(b) {
+            let may_share_side = (p != a) & (q != a) & stamps.contains(p) & stamps.contains(q);
+            if may_share_side && self.has_side(a, p, q) {
+                return false;
+            }
+        }
+        let mut shared = 0;
+        for [p, q] in self.ring(b) {
+            shared += usize::from((p != a) & stamps.take(p)) + usize::from((q != a) & stamps.take(q));
+        }
+        shared == neighbours
+    }
+
+    /// Whether the three are a triangle, either way around.
+    fn has_side(self, a: u32, p: u32, q: u32) -> bool {
+        self.ring(a).any(|pair| pair == [p, q] || pair == [q, p])
+    }
+}

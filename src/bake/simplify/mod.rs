@@ -1,0 +1,178 @@
+//! Simplify: from a surface to one of fewer triangles. All methods are behind one interface, [`Simplifier`].
+//!
+//! | method | what it does | take it for |
+//! |---|---|---|
+//! | [`GarlandHeckbert`] | contracts edges in the order of their quadric error | nearly everything |
+//!
+//! A method says how far off it believes the result to be. That is an estimate, good for ordering and stopping; what
+//! the runtime is told of a level has to be measured.
+//!
+//! # Example
+//! ```
+//! use lod_budget::bake::shapes;
+//! use lod_budget::bake::simplify::{GarlandHeckbert, Simplifier, Target, Task, quietly};
+//!
+//! let knot = shapes::torus_knot(200, 20);
+//! let half = Task::new(&knot, Target::triangles(knot.triangles.len() / 2));
+//! let simplified = GarlandHeckbert::default().simplify(&half, &mut quietly)?;
+//! assert_eq!(simplified.surface.triangles.len(), 4_000);
+//! # Ok::<(), lod_budget::bake::simplify::SimplifyError>(())
+//! ```
+
+mod error;
+mod fans;
+mod link;
+mod order;
+mod quadric;
+mod queue;
+
+pub use error::SimplifyError;
+pub use quadric::{GarlandHeckbert, Placement, Topology};
+
+use std::ops::ControlFlow;
+
+use super::Surface;
+
+/// A way of simplifying.
+pub trait Simplifier {
+    /// Simplifies until the target is met or nothing more can be done, and asks `progress` every few thousand steps
+    /// whether to go on. The same task has the same result.
+    ///
+    /// Triangles that use a vertex twice are dropped first, vertices without a triangle last.
+    ///
+    /// # Errors
+    /// A task that breaks a rule of [`Task`].
+    fn simplify(
+        &self,
+        task: &Task,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Simplified, SimplifyError>;
+}
+
+/// What to simplify, and how far.
+#[derive(Clone, Copy, Debug)]
+pub struct Task<'a> {
+    /// The surface. All positions that a triangle uses must be finite, all indices in range; there may be up to 2²⁸
+    /// triangles.
+    pub surface: &'a Surface,
+    /// When to stop.
+    pub target: Target,
+    /// Per vertex, whether it must stay where it is, bit by bit; empty when all may move.
+    pub locked: &'a [bool],
+    /// Per triangle, how much its error counts, finite and ≥ 0: 1 as usual, more to keep detail, less to give it up
+    /// first; empty when all count 1.
+    pub weights: &'a [f32],
+}
+
+impl<'a> Task<'a> {
+    /// The task of simplifying all of `surface` alike.
+    pub const fn new(surface: &'a Surface, target: Target) -> Self {
+        Self { surface, target, locked: &[], weights: &[] }
+    }
+
+    /// Refuses a task that breaks a rule, naming the first offence.
+    fn check(&self) -> Result<(), SimplifyError> {
+        let Surface { positions, triangles } = self.surface;
+        let fits = |given: usize, needed: usize| given == 0 || given == needed;
+        if triangles.len() > MAX_TRIANGLES || positions.len() > u32::MAX as usize {
+            return Err(SimplifyError::TooLarge { triangles: triangles.len() });
+        }
+        if !fits(self.locked.len(), positions.len()) {
+            return Err(SimplifyError::Locked { given: self.locked.len(), vertices: positions.len() });
+        }
+        if !fits(self.weights.len(), triangles.len()) {
+            return Err(SimplifyError::Weights { given: self.weights.len(), triangles: triangles.len() });
+        }
+        if let Some(triangle) = self.weights.iter().position(|w| !(w.is_finite() && *w >= 0.0)) {
+            return Err(SimplifyError::Weight { triangle });
+        }
+        triangles.iter().enumerate().try_for_each(|(i, t)| self.check_triangle(i, t))
+    }
+
+    fn check_triangle(&self, triangle: usize, corners: &[u32; 3]) -> Result<(), SimplifyError> {
+        corners.iter().try_for_each(|&vertex| match self.surface.positions.get(vertex as usize) {
+            None => Err(SimplifyError::Index { triangle, vertex }),
+            Some(p) if !p.is_finite() => Err(SimplifyError::NotFinite { triangle, vertex }),
+            Some(_) => Ok(()),
+        })
+    }
+
+    fn is_locked(&self, vertex: usize) -> bool {
+        self.locked.get(vertex).is_some_and(|&l| l)
+    }
+
+    fn weight(&self, triangle: usize) -> f64 {
+        self.weights.get(triangle).map_or(1.0, |&w| f64::from(w))
+    }
+}
+
+/// Most triangles a task may have, so that the lists of triangles around vertices fit 32-bit offsets as they grow.
+const MAX_TRIANGLES: usize = 1 << 28;
+
+/// When to stop: as soon as there are so few triangles, or before a step would cost more than the error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// Go on while there are more triangles than this.
+    pub triangles: usize,
+    /// Take no step whose estimated error is above this, in object units.
+    pub error: f32,
+}
+
+impl Target {
+    /// So many triangles, whatever the error.
+    pub const fn triangles(triangles: usize) -> Self {
+        Self { triangles, error: f32::INFINITY }
+    }
+
+    /// As few triangles as an error allows, in object units.
+    pub const fn error(error: f32) -> Self {
+        Self { triangles: 0, error }
+    }
+}
+
+/// How far a simplification has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Triangles at the start.
+    pub from: usize,
+    /// Triangles now.
+    pub triangles: usize,
+    /// Triangles asked for.
+    pub target: usize,
+}
+
+/// The progress callback of somebody who does not care.
+pub fn quietly(_: Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// A simplified surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simplified {
+    /// What is left, without vertices that no triangle uses.
+    pub surface: Surface,
+    /// Per vertex, the old vertex that it stems from: the one at its very place if there is one.
+    pub origins: Vec<u32>,
+    /// Per old vertex, the vertex that it became; [`Simplified::GONE`] if all its triangles went.
+    pub heirs: Vec<u32>,
+    /// The largest error of a step, as the method estimates it, in object units. No bound of the deviation.
+    pub error: f32,
+    /// Why it stopped.
+    pub stopped: Stopped,
+}
+
+impl Simplified {
+    /// The heir of an old vertex that has none.
+    pub const GONE: u32 = u32::MAX;
+}
+
+/// Why a simplification stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stopped {
+    /// There are as few triangles as asked for.
+    Triangles,
+    /// Every further step would cost too much, or is forbidden.
+    Exhausted,
+    /// The progress callback said so.
+    Cancelled,
+}

@@ -1,0 +1,76 @@
+//! Edge contraction in the order of the quadric error.
+//!
+//! M. Garland, P. Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH 1997. The error of a vertex
+//! is the sum of squared distances to the planes of the triangles that were contracted into it, weighted by their
+//! areas; the edge whose contraction costs least goes first. Where we depart from the paper:
+//! - the best place is held near the middle of the edge by a weak spring, so that flat and straight parts are no
+//!   special case (see [`Placement::Optimal`]);
+//! - among contractions that cost next to nothing the shorter edge goes first, so that flat parts keep good triangles;
+//! - a contraction that would turn a triangle over or make it a sliver is refused instead of made dearer;
+//! - the queue is lazy: errors only grow, so an edge whose surroundings changed is looked at again when it comes up,
+//!   not before (J. Cohen, D. Manocha, M. Olano, "Simplifying polygonal models using successive mappings", 1997).
+
+mod form;
+mod greedy;
+mod guard;
+mod placement;
+
+pub use placement::Placement;
+
+use std::ops::ControlFlow;
+
+use super::{Progress, Simplified, Simplifier, SimplifyError, Task};
+use greedy::Greedy;
+
+/// Whether contractions may change the topology.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Topology {
+    /// Closed stays closed, manifold stays manifold, and no hole, handle or part appears or goes.
+    #[default]
+    Preserved,
+    /// Holes may close, handles and small parts may collapse, edges of more than two triangles may come.
+    Free,
+}
+
+/// Edge contraction by quadric error: the best of the methods in most respects, at some 2 µs per triangle that goes.
+///
+/// Do not take it for foliage, where what counts is how much of the view is covered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GarlandHeckbert {
+    /// Where contracted vertices go.
+    pub placement: Placement,
+    /// Whether holes may close, and the like.
+    pub topology: Topology,
+    /// How much moving away from a border counts, compared with moving away from the surface, ≥ 0. Edges of more than
+    /// two triangles count as borders.
+    pub border: f32,
+    /// Least cosine of the angle by which one contraction may turn a triangle, in [0, 1].
+    pub least_turn: f32,
+    /// Least shape of a triangle that had a better one: 1 is equilateral, 0 has no area.
+    pub least_shape: f32,
+}
+
+impl Default for GarlandHeckbert {
+    fn default() -> Self {
+        Self {
+            placement: Placement::Optimal,
+            topology: Topology::Preserved,
+            border: 10.0,
+            least_turn: 0.2,
+            least_shape: 0.02,
+        }
+    }
+}
+
+impl Simplifier for GarlandHeckbert {
+    fn simplify(
+        &self,
+        task: &Task,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Simplified, SimplifyError> {
+        task.check()?;
+        let mut greedy = Greedy::new(self, task);
+        let stopped = greedy.run(progress);
+        Ok(greedy.finish(stopped))
+    }
+}
