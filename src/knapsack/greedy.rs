@@ -43,11 +43,11 @@ pub fn greedy(instance: &Instance) -> Solution {
 ///
 /// 1. Items that do not fit even with every other class at its cheapest are dropped, *before* hulls are built.
 /// 2. All classes start at their cheapest item. Hull steps are taken in order of (slope descending, class ascending,
-///   cost ascending); a step that does not fit is skipped, its class takes no later step, and the rest go on.
+///    cost ascending); a step that does not fit is skipped, its class takes no later step, and the rest go on.
 /// 3. The first step that did not fit is the critical one. A second attempt takes its item first and then goes through
-///   the steps again; the better attempt is kept, on a tie the first.
+///    the steps again; the better attempt is kept, on a tie the first.
 /// 4. What is left of the budget is spent by exchanging a few items with slopes near the critical one, λ, and by taking
-///   steps again.
+///    steps again.
 ///
 /// The benefit is at least half of the optimum: the linear optimum is at most the first attempt up to the critical step
 /// plus that step, and each attempt holds one of the two (Kellerer, Pferschy, Pisinger, *Knapsack Problems*, 2004, ch.
