@@ -505,7 +505,7 @@ impl SharedKnapsack {
         let cheapest = |class| Class::new(&self.profiles, class).cost(0);
         let cheapest = self.classes.iter().map(cheapest).fold(0, u64::saturating_add);
         let [low, high] = self.cold_bracket(cheapest.saturating_add((room as f64 * share) as u64), None);
-        [(low * 0.98).max(f32::MIN_POSITIVE), high * 1.02]
+        [(low * 0.995).max(f32::MIN_POSITIVE), high * 1.005]
     }
 
     /// Makes room for as many classes to be looked at closely as there are, so that a frame with more of them than any

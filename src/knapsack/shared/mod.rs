@@ -166,7 +166,7 @@ impl Critical {
 
 /// Bracket widths around the last λ, as fractions: narrower means fewer steps to sort, wider fewer misses. A miss costs
 /// a pass for the histogram and one for the survey.
-const WIDTH: std::ops::RangeInclusive<f32> = 0.01..=0.1;
+const WIDTH: std::ops::RangeInclusive<f32> = 0.001..=0.1;
 
 /// How far λ is expected to go on moving from one call to the next, as a factor. Further apart follows faster drives,
 /// and expects more of a jump.
