@@ -1,5 +1,4 @@
-//! How the loops over columns run: in the widest vectors that the machine has, and on as many threads as they are told
-//! to.
+//! How the loops over columns run: in wide vectors where the machine has them, and on as many threads as they are told to.
 //!
 //! A loop is written once, over fixed arrays of lanes, and compiled once for each width; which one runs is decided when
 //! it runs. The arithmetic is the same: nothing is fused or reordered, so that neither width nor threads change an
