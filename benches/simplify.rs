@@ -9,9 +9,9 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use lod_budget::bake::Surface;
 use lod_budget::bake::shapes::{icosphere, terrain, torus_knot};
 use lod_budget::bake::simplify::{GarlandHeckbert, Simplifier, Target, Task, quietly};
+use lod_budget::bake::{Mesh, Surface};
 
 /// Shares of the triangles that are kept, in percent.
 const SHARES: [usize; 5] = [50, 25, 12, 6, 3];
@@ -23,15 +23,16 @@ fn main() {
     println!("{:>10} {:>5} {:>9} {:>7} {:>11}", "shape", "%", "triangles", "s", "estimate");
     for (name, shape) in &shapes {
         save(folder.as_deref(), name, 100, shape);
+        let mesh = Mesh::from(shape.clone());
         for share in SHARES {
-            let task = Task::new(shape, Target::triangles(shape.triangles.len() * share / 100));
+            let task = Task::new(&mesh, Target::triangles(shape.triangles.len() * share / 100));
             let (start, cpu_start) = (Instant::now(), cpu_seconds());
             let simplified = method.simplify(&task, &mut quietly).expect("a good shape");
             let cpu = cpu_seconds().zip(cpu_start).map(|(end, start)| end - start);
             let seconds = cpu.unwrap_or(start.elapsed().as_secs_f64());
-            let triangles = simplified.surface.triangles.len();
+            let triangles = simplified.mesh.triangles.len();
             println!("{name:>10} {share:>5} {triangles:>9} {seconds:>7.3} {:>11.3e}", simplified.error);
-            save(folder.as_deref(), name, share, &simplified.surface);
+            save(folder.as_deref(), name, share, &simplified.mesh.surface());
         }
     }
 }

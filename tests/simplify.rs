@@ -6,12 +6,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 
 use glam::{DVec3, Vec3};
-use lod_budget::bake::Surface;
 use lod_budget::bake::shapes::{icosphere, terrain, torus, torus_knot};
 use lod_budget::bake::simplify::{
     GarlandHeckbert, Placement, Simplified, Simplifier, SimplifyError, Stopped, Target, Task, Topology,
     quietly,
 };
+use lod_budget::bake::{Mesh, Surface};
 use proptest::prelude::*;
 
 const PLACEMENTS: [Placement; 4] =
@@ -22,7 +22,8 @@ fn simplify(method: &GarlandHeckbert, task: &Task) -> Simplified {
 }
 
 fn to(surface: &Surface, triangles: usize) -> Simplified {
-    simplify(&GarlandHeckbert::default(), &Task::new(surface, Target::triangles(triangles)))
+    let mesh = surface.clone().into();
+    simplify(&GarlandHeckbert::default(), &Task::new(&mesh, Target::triangles(triangles)))
 }
 
 /// How many triangles go along each directed edge.
@@ -81,12 +82,12 @@ fn center(surface: &Surface, triangle: [u32; 3]) -> Vec3 {
 }
 
 /// A closed shape, its vertices pushed about by up to `bump`, and its Euler characteristic.
-fn closed() -> impl Strategy<Value = (Surface, i64)> {
+fn closed() -> impl Strategy<Value = (Mesh, i64)> {
     let sphere = (2..8u32).prop_map(|cuts| (icosphere(cuts), 2));
     let torus = (5..20u32, 5..12u32, 0.2..0.5f32).prop_map(|(r, s, tube)| (torus(r, s, tube), 0));
     (prop_oneof![sphere, torus], 0.0..0.1f32, any::<u32>()).prop_map(|((mut surface, euler), bump, seed)| {
         perturb(&mut surface, bump, seed);
-        (surface, euler)
+        (surface.into(), euler)
     })
 }
 
@@ -103,17 +104,21 @@ fn perturb(surface: &mut Surface, bump: f32, seed: u32) {
 
 /// What holds of every result, whatever the task.
 fn check(task: &Task, result: &Simplified) {
-    let Simplified { surface, origins, heirs, error, stopped } = result;
+    let Simplified { mesh, origins, wedge_origins, heirs, error, stopped } = result;
+    assert_eq!(mesh.check(), Ok(()));
+    let surface = mesh.surface();
     let count = surface.positions.len() as u32;
-    assert!(surface.triangles.len() <= task.surface.triangles.len());
+    assert!(surface.triangles.len() <= task.mesh.triangles.len());
     assert!(surface.triangles.iter().all(|&[a, b, c]| a != b && b != c && c != a && a.max(b).max(c) < count));
     assert!((0..count).all(|v| surface.triangles.as_flattened().contains(&v)), "a vertex without triangle");
     assert!(surface.positions.iter().all(|p| p.is_finite()) && error.is_finite() && *error >= 0.0);
-    assert_eq!((origins.len(), heirs.len()), (surface.positions.len(), task.surface.positions.len()));
+    assert_eq!((origins.len(), heirs.len()), (surface.positions.len(), task.mesh.positions.len()));
     assert!(heirs.iter().all(|&h| h < count || h == Simplified::GONE));
     for (new, &old) in origins.iter().enumerate() {
         assert_eq!(heirs[old as usize] as usize, new, "what stems from a vertex is its heir");
     }
+    assert_eq!(wedge_origins.len(), mesh.wedges.len());
+    assert!(wedge_origins.iter().all(|&w| (w as usize) < task.mesh.wedges.len()));
     match stopped {
         Stopped::Triangles => assert!(surface.triangles.len() <= task.target.triangles),
         _ => assert!(surface.triangles.len() > task.target.triangles),
@@ -126,31 +131,33 @@ proptest! {
 
     #[test]
     fn closed_manifolds_stay_so_with_as_many_handles(
-        (surface, characteristic) in closed(),
+        (mesh, characteristic) in closed(),
         share in 0.0..1.0f64,
         placement in prop::sample::select(&PLACEMENTS[..]),
     ) {
         let method = GarlandHeckbert { placement, ..Default::default() };
-        let target = Target::triangles((share * surface.triangles.len() as f64) as usize);
-        let task = Task::new(&surface, target);
+        let target = Target::triangles((share * mesh.triangles.len() as f64) as usize);
+        let task = Task::new(&mesh, target);
         let result = simplify(&method, &task);
         check(&task, &result);
-        prop_assert!(borders(&result.surface).is_empty() && is_manifold(&result.surface));
-        prop_assert_eq!(euler(&result.surface), characteristic);
+        let surface = result.mesh.surface();
+        prop_assert!(borders(&surface).is_empty() && is_manifold(&surface));
+        prop_assert_eq!(euler(&surface), characteristic);
     }
 
     #[test]
     fn sheets_stay_sheets_and_keep_their_border(
         (side, seed, share) in (5..20u32, any::<u32>(), 0.2..1.0f64),
     ) {
-        let surface = terrain(side, seed);
-        let task = Task::new(&surface, Target::triangles((share * surface.triangles.len() as f64) as usize));
+        let mesh = Mesh::from(terrain(side, seed));
+        let task = Task::new(&mesh, Target::triangles((share * mesh.triangles.len() as f64) as usize));
         let result = simplify(&GarlandHeckbert::default(), &task);
         check(&task, &result);
-        prop_assert!(is_manifold(&result.surface));
-        prop_assert_eq!(euler(&result.surface), 1);
-        for (a, b) in borders(&result.surface) {
-            let [a, b] = [a, b].map(|v| result.surface.positions[v as usize]);
+        let surface = result.mesh.surface();
+        prop_assert!(is_manifold(&surface));
+        prop_assert_eq!(euler(&surface), 1);
+        for (a, b) in borders(&surface) {
+            let [a, b] = [a, b].map(|v| result.mesh.positions[v as usize]);
             let off = |p: Vec3| p.x.min(p.y).min(1.0 - p.x).min(1.0 - p.y).abs();
             prop_assert!(off(a).max(off(b)) < 0.02 && off(0.5 * (a + b)) < 0.05, "{a} {b}");
         }
@@ -168,13 +175,13 @@ proptest! {
         locked in prop::collection::vec(prop::bool::weighted(0.2), 12),
     ) {
         let positions = points.iter().map(|&[x, y, z]| Vec3::new(x.into(), y.into(), z.into())).collect();
-        let surface = Surface { positions, triangles };
-        let task = Task { locked: &locked, ..Task::new(&surface, Target::triangles(target)) };
+        let mesh = Mesh::from(Surface { positions, triangles });
+        let task = Task { locked: &locked, ..Task::new(&mesh, Target::triangles(target)) };
         let result = simplify(&GarlandHeckbert { placement, topology, ..Default::default() }, &task);
         check(&task, &result);
-        let lasts: BTreeSet<[u32; 3]> = result.surface.positions.iter().map(|p| p.to_array().map(f32::to_bits)).collect();
+        let lasts: BTreeSet<[u32; 3]> = result.mesh.positions.iter().map(|p| p.to_array().map(f32::to_bits)).collect();
         for v in (0..12).filter(|&v| locked[v] && result.heirs[v] != Simplified::GONE) {
-            prop_assert!(lasts.contains(&surface.positions[v].to_array().map(f32::to_bits)));
+            prop_assert!(lasts.contains(&mesh.positions[v].to_array().map(f32::to_bits)));
         }
     }
 
@@ -183,7 +190,7 @@ proptest! {
         let sphere = icosphere(cuts);
         let scale = (power as f32).exp2();
         let scaled = Surface { positions: sphere.positions.iter().map(|&p| p * scale).collect(), ..sphere.clone() };
-        let [small, large] = [&sphere, &scaled].map(|s| to(s, 60).surface);
+        let [small, large] = [&sphere, &scaled].map(|s| to(s, 60).mesh);
         prop_assert_eq!(small.triangles, large.triangles);
         prop_assert!(small.positions.iter().zip(&large.positions).all(|(&a, &b)| a * scale == b));
     }
@@ -193,7 +200,7 @@ proptest! {
 fn no_triangle_of_a_smooth_surface_turns_over() {
     for (surface, name) in [(icosphere(20), "sphere"), (torus_knot(400, 32), "knot")] {
         for share in [2, 8, 16] {
-            let result = to(&surface, surface.triangles.len() / share).surface;
+            let result = to(&surface, surface.triangles.len() / share).mesh.surface();
             for &triangle in &result.triangles {
                 let at = center(&result, triangle);
                 let near = |&&t: &&[u32; 3]| (center(&surface, t).distance_squared(at) * 1e6) as u64;
@@ -210,22 +217,23 @@ fn a_plane_costs_nothing_and_becomes_two_triangles() {
     let mut plane = terrain(20, 0);
     plane.positions.iter_mut().for_each(|p| p.z = 0.5);
     let result = to(&plane, 2);
-    assert_eq!((result.surface.triangles.len(), result.stopped), (2, Stopped::Triangles));
+    assert_eq!((result.mesh.triangles.len(), result.stopped), (2, Stopped::Triangles));
     assert!(result.error < 1e-6, "{}", result.error);
-    let area: f64 = result.surface.triangles.iter().map(|&t| normal(&result.surface, t).length() / 2.0).sum();
+    let surface = result.mesh.surface();
+    let area: f64 = surface.triangles.iter().map(|&t| normal(&surface, t).length() / 2.0).sum();
     assert!((area - 1.0).abs() < 1e-5, "{area}");
 }
 
 #[test]
 fn an_error_is_kept_and_spent() {
-    let sphere = icosphere(20);
+    let sphere = Mesh::from(icosphere(20));
     let [fine, coarse] = [2e-3, 2e-2].map(|error| {
         let task = Task::new(&sphere, Target::error(error));
         let result = simplify(&GarlandHeckbert::default(), &task);
         check(&task, &result);
         assert_eq!(result.stopped, Stopped::Exhausted);
         assert!(result.error > 0.5 * error, "{} of {error}", result.error);
-        result.surface.triangles.len()
+        result.mesh.triangles.len()
     });
     assert!(4 * coarse < fine && fine < sphere.triangles.len(), "{coarse} {fine}");
 }
@@ -235,28 +243,29 @@ fn weights_keep_detail_where_they_are_high() {
     let sphere = icosphere(20);
     let weights: Vec<f32> =
         sphere.triangles.iter().map(|&t| if center(&sphere, t).x > 0.0 { 100.0 } else { 1.0 }).collect();
-    let task = Task { weights: &weights, ..Task::new(&sphere, Target::triangles(1_000)) };
-    let result = simplify(&GarlandHeckbert::default(), &task).surface;
+    let mesh = Mesh::from(sphere);
+    let task = Task { weights: &weights, ..Task::new(&mesh, Target::triangles(1_000)) };
+    let result = simplify(&GarlandHeckbert::default(), &task).mesh.surface();
     let kept = result.triangles.iter().filter(|&&t| center(&result, t).x > 0.0).count();
     assert!(kept > 650, "{kept}");
 }
 
 #[test]
 fn end_points_are_old_vertices_bit_by_bit() {
-    let knot = torus_knot(60, 8);
+    let knot = Mesh::from(torus_knot(60, 8));
     let method = GarlandHeckbert { placement: Placement::Endpoint, ..Default::default() };
     let result = simplify(&method, &Task::new(&knot, Target::triangles(200)));
-    for (position, &origin) in result.surface.positions.iter().zip(&result.origins) {
+    for (position, &origin) in result.mesh.positions.iter().zip(&result.origins) {
         assert_eq!(*position, knot.positions[origin as usize]);
     }
 }
 
 #[test]
 fn shapes_that_can_become_nothing_stop_at_their_topology() {
-    assert_eq!(to(&icosphere(4), 0).surface.triangles.len(), 4);
-    assert_eq!(euler(&to(&torus(12, 8, 0.3), 0).surface), 0);
+    assert_eq!(to(&icosphere(4), 0).mesh.triangles.len(), 4);
+    assert_eq!(euler(&to(&torus(12, 8, 0.3), 0).mesh.surface()), 0);
     let single = Surface { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]] };
-    assert_eq!(to(&single, 0).surface, single);
+    assert_eq!(to(&single, 0).mesh.surface(), single);
 }
 
 #[test]
@@ -267,7 +276,7 @@ fn nothing_becomes_nothing() {
         Surface { positions: vec![Vec3::ONE; 2], triangles: vec![[0, 1, 1], [0, 0, 0]] },
     ] {
         let result = to(&surface, 0);
-        assert_eq!((result.surface, result.stopped), (Surface::default(), Stopped::Triangles));
+        assert_eq!((result.mesh.surface(), result.stopped), (Surface::default(), Stopped::Triangles));
     }
 }
 
@@ -275,6 +284,7 @@ fn nothing_becomes_nothing() {
 fn points_in_one_place_do_no_harm() {
     let mut sphere = icosphere(6);
     sphere.positions.iter_mut().skip(20).for_each(|p| *p = Vec3::splat(0.25));
+    let sphere = Mesh::from(sphere);
     let task = Task::new(&sphere, Target::triangles(30));
     check(&task, &simplify(&GarlandHeckbert::default(), &task));
 }
@@ -288,12 +298,12 @@ fn a_large_fan_is_thinned_from_its_rim() {
     positions.extend((0..rim).map(|i| Vec3::new(around(i).cos(), around(i).sin(), -0.5)));
     let triangles = (0..rim).map(|i| [0, 1 + i, 1 + (i + 1) % rim]).collect();
     let cone = Surface { positions, triangles };
-    assert_eq!(to(&cone, 100).surface.triangles.len(), 100);
+    assert_eq!(to(&cone, 100).mesh.triangles.len(), 100);
 }
 
 #[test]
 fn a_cancelled_task_has_the_result_so_far() {
-    let sphere = icosphere(40);
+    let sphere = Mesh::from(icosphere(40));
     let task = Task::new(&sphere, Target::triangles(10));
     let mut calls = 0;
     let result = GarlandHeckbert::default().simplify(&task, &mut |progress| {
@@ -304,19 +314,22 @@ fn a_cancelled_task_has_the_result_so_far() {
     let result = result.expect("the task keeps the rules");
     check(&task, &result);
     assert_eq!((result.stopped, calls), (Stopped::Cancelled, 2));
-    assert!(result.surface.triangles.len() > 10_000);
+    assert!(result.mesh.triangles.len() > 10_000);
 }
 
 #[test]
 fn what_breaks_a_rule_is_refused_by_name() {
-    let good = icosphere(1);
+    let good = Mesh::from(icosphere(1));
     let error =
         |task: Task| GarlandHeckbert::default().simplify(&task, &mut quietly).expect_err("a broken task");
     let target = Target::triangles(4);
 
     let mut index = good.clone();
     index.triangles[3][1] = 12;
-    assert_eq!(error(Task::new(&index, target)), SimplifyError::Index { triangle: 3, vertex: 12 });
+    assert_eq!(
+        error(Task::new(&index, target)),
+        SimplifyError::Mesh(index.check().expect_err("a broken mesh"))
+    );
     let mut nan = good.clone();
     nan.positions[11].y = f32::NAN;
     let refused = error(Task::new(&nan, target));
@@ -418,9 +431,10 @@ proptest! {
         perturb(&mut sphere, bump, seed);
         let method = GarlandHeckbert { least_turn: 0.0, least_shape: 0.0, ..Default::default() };
         let slow = by_the_book::errors(&sphere, sphere.triangles.len() / 2);
+        let mesh = Mesh::from(sphere);
         for &(triangles, error) in slow.iter().step_by(7) {
-            let fast = simplify(&method, &Task::new(&sphere, Target::triangles(triangles)));
-            prop_assert_eq!(fast.surface.triangles.len(), triangles);
+            let fast = simplify(&method, &Task::new(&mesh, Target::triangles(triangles)));
+            prop_assert_eq!(fast.mesh.triangles.len(), triangles);
             let fast = f64::from(fast.error);
             prop_assert!((fast - error).abs() < 0.01 * error, "{triangles} triangles: {fast} but {error}");
         }

@@ -55,6 +55,15 @@ pub struct Group {
     pub triangles: Range<usize>,
 }
 
+impl From<Surface> for Mesh {
+    /// The mesh of a surface, without attributes: a wedge per position, all triangles one group.
+    fn from(Surface { positions, triangles }: Surface) -> Self {
+        let wedges = (0..positions.len() as u32).collect();
+        let groups = vec![Group { triangles: 0..triangles.len(), ..Group::default() }];
+        Self { positions, wedges, triangles, groups, ..Self::default() }
+    }
+}
+
 impl Mesh {
     /// The geometry alone: triangles of positions, of which there are as many and in the same order.
     pub fn surface(&self) -> Surface {
@@ -66,6 +75,12 @@ impl Mesh {
     /// The smallest box around all positions, used or not.
     pub fn bounds(&self) -> Aabb {
         Aabb::around(self.positions.iter().copied())
+    }
+
+    /// Whether wedges have anything but a position.
+    pub(super) fn has_attributes(&self) -> bool {
+        let columns = [self.normals.len(), self.colours.len(), self.tangents.len(), self.skins.len()];
+        columns.iter().any(|&rows| rows > 0) || !self.uvs.is_empty()
     }
 
     /// The positions of a triangle's corners, as indices.

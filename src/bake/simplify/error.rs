@@ -5,15 +5,10 @@ use std::fmt;
 use super::MAX_TRIANGLES;
 
 /// Why a task is refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SimplifyError {
-    /// A triangle uses a vertex that there is not.
-    Index {
-        /// The first such triangle.
-        triangle: usize,
-        /// The vertex it names.
-        vertex: u32,
-    },
+    /// The mesh breaks a rule of [`Mesh::check`](crate::bake::Mesh::check).
+    Mesh(String),
     /// A triangle uses a vertex whose position is infinite or not a number.
     NotFinite {
         /// The first such triangle.
@@ -49,13 +44,8 @@ pub enum SimplifyError {
 
 impl fmt::Display for SimplifyError {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::Index { triangle, vertex } => {
-                write!(
-                    out,
-                    "triangle {triangle}: its corners must be vertices of the mesh, but {vertex} is not"
-                )
-            }
+        match self {
+            Self::Mesh(rule) => out.write_str(rule),
             Self::NotFinite { triangle, vertex } => {
                 write!(
                     out,

@@ -1,4 +1,4 @@
-//! Simplify: from a surface to one of fewer triangles. All methods are behind one interface, [`Simplifier`].
+//! Simplify: from a mesh to one of fewer triangles. All methods are behind one interface, [`Simplifier`].
 //!
 //! | method | what it does | take it for |
 //! |---|---|---|
@@ -12,10 +12,10 @@
 //! use lod_budget::bake::shapes;
 //! use lod_budget::bake::simplify::{GarlandHeckbert, Simplifier, Target, Task, quietly};
 //!
-//! let knot = shapes::torus_knot(200, 20);
-//! let half = Task::new(&knot, Target::triangles(knot.triangles.len() / 2));
+//! let knot = shapes::torus_knot(200, 20).into();
+//! let half = Task::new(&knot, Target::triangles(4_000));
 //! let simplified = GarlandHeckbert::default().simplify(&half, &mut quietly)?;
-//! assert_eq!(simplified.surface.triangles.len(), 4_000);
+//! assert_eq!(simplified.mesh.triangles.len(), 4_000);
 //! # Ok::<(), lod_budget::bake::simplify::SimplifyError>(())
 //! ```
 
@@ -25,20 +25,21 @@ mod link;
 mod order;
 mod quadric;
 mod queue;
+mod rebuild;
 
 pub use error::SimplifyError;
 pub use quadric::{GarlandHeckbert, Placement, Topology};
 
 use std::ops::ControlFlow;
 
-use super::Surface;
+use super::Mesh;
 
 /// A way of simplifying.
 pub trait Simplifier {
     /// Simplifies until the target is met or nothing more can be done, and asks `progress` every few thousand steps
     /// whether to go on. The same task has the same result.
     ///
-    /// Triangles that use a vertex twice are dropped first, vertices without a triangle last.
+    /// Triangles that use a position twice are dropped first, positions without a triangle last.
     ///
     /// # Errors
     /// A task that breaks a rule of [`Task`].
@@ -47,17 +48,39 @@ pub trait Simplifier {
         task: &Task,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Simplified, SimplifyError>;
+
+    /// Simplifies to several targets, each from the task's mesh: as many calls of [`Simplifier::simplify`], unless the
+    /// method knows better. The task's own target plays no part. Ends early, with what there is, when `progress` says
+    /// so.
+    ///
+    /// # Errors
+    /// As [`Simplifier::simplify`].
+    fn chain(
+        &self,
+        task: &Task,
+        targets: &[Target],
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Vec<Simplified>, SimplifyError> {
+        let mut chain: Vec<Simplified> = Vec::with_capacity(targets.len());
+        for &target in targets {
+            chain.push(self.simplify(&Task { target, ..*task }, progress)?);
+            if chain.last().is_some_and(|level| level.stopped == Stopped::Cancelled) {
+                break;
+            }
+        }
+        Ok(chain)
+    }
 }
 
 /// What to simplify, and how far.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a> {
-    /// The surface. All positions that a triangle uses must be finite, all indices in range; there may be up to 2²⁸
-    /// triangles.
-    pub surface: &'a Surface,
+    /// The mesh, which must pass [`Mesh::check`]. All positions that a triangle uses must be finite; there may be up to
+    /// 2²⁸ triangles.
+    pub mesh: &'a Mesh,
     /// When to stop.
     pub target: Target,
-    /// Per vertex, whether it must stay where it is, bit by bit; empty when all may move.
+    /// Per position, whether it must stay where it is, bit by bit; empty when all may move.
     pub locked: &'a [bool],
     /// Per triangle, how much its error counts, finite and ≥ 0: 1 as usual, more to keep detail, less to give it up
     /// first; empty when all count 1.
@@ -65,16 +88,16 @@ pub struct Task<'a> {
 }
 
 impl<'a> Task<'a> {
-    /// The task of simplifying all of `surface` alike.
-    pub const fn new(surface: &'a Surface, target: Target) -> Self {
-        Self { surface, target, locked: &[], weights: &[] }
+    /// The task of simplifying all of `mesh` alike.
+    pub const fn new(mesh: &'a Mesh, target: Target) -> Self {
+        Self { mesh, target, locked: &[], weights: &[] }
     }
 
     /// Refuses a task that breaks a rule, naming the first offence.
     fn check(&self) -> Result<(), SimplifyError> {
-        let Surface { positions, triangles } = self.surface;
+        let Mesh { positions, triangles, wedges, .. } = self.mesh;
         let fits = |given: usize, needed: usize| given == 0 || given == needed;
-        if triangles.len() > MAX_TRIANGLES || positions.len() > u32::MAX as usize {
+        if triangles.len() > MAX_TRIANGLES || positions.len().max(wedges.len()) > u32::MAX as usize {
             return Err(SimplifyError::TooLarge { triangles: triangles.len() });
         }
         if !fits(self.locked.len(), positions.len()) {
@@ -86,15 +109,16 @@ impl<'a> Task<'a> {
         if let Some(triangle) = self.weights.iter().position(|w| !(w.is_finite() && *w >= 0.0)) {
             return Err(SimplifyError::Weight { triangle });
         }
-        triangles.iter().enumerate().try_for_each(|(i, t)| self.check_triangle(i, t))
+        self.mesh.check().map_err(SimplifyError::Mesh)?;
+        (0..triangles.len()).try_for_each(|triangle| self.check_triangle(triangle))
     }
 
-    fn check_triangle(&self, triangle: usize, corners: &[u32; 3]) -> Result<(), SimplifyError> {
-        corners.iter().try_for_each(|&vertex| match self.surface.positions.get(vertex as usize) {
-            None => Err(SimplifyError::Index { triangle, vertex }),
-            Some(p) if !p.is_finite() => Err(SimplifyError::NotFinite { triangle, vertex }),
-            Some(_) => Ok(()),
-        })
+    fn check_triangle(&self, triangle: usize) -> Result<(), SimplifyError> {
+        let is_finite = |&vertex: &u32| self.mesh.positions[vertex as usize].is_finite();
+        match self.mesh.corners(triangle).into_iter().find(|vertex| !is_finite(vertex)) {
+            Some(vertex) => Err(SimplifyError::NotFinite { triangle, vertex }),
+            None => Ok(()),
+        }
     }
 
     fn is_locked(&self, vertex: usize) -> bool {
@@ -146,14 +170,17 @@ pub fn quietly(_: Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// A simplified surface.
+/// A simplified mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simplified {
-    /// What is left, without vertices that no triangle uses.
-    pub surface: Surface,
-    /// Per vertex, the old vertex that it stems from: the one at its very place if there is one.
+    /// What is left, without positions and wedges that no triangle uses. Triangles are in the order of those they were,
+    /// so that groups are still runs.
+    pub mesh: Mesh,
+    /// Per position, the old position that it stems from: the one at its very place if there is one.
     pub origins: Vec<u32>,
-    /// Per old vertex, the vertex that it became; [`Simplified::GONE`] if all its triangles went.
+    /// Per wedge, the old wedge that it stems from: its attributes are that one's, unless the method works out others.
+    pub wedge_origins: Vec<u32>,
+    /// Per old position, the position that it became; [`Simplified::GONE`] if all its triangles went.
     pub heirs: Vec<u32>,
     /// The largest error of a step, as the method estimates it, in object units. No bound of the deviation.
     pub error: f32,
@@ -162,7 +189,7 @@ pub struct Simplified {
 }
 
 impl Simplified {
-    /// The heir of an old vertex that has none.
+    /// The heir of an old position that has none.
     pub const GONE: u32 = u32::MAX;
 }
 

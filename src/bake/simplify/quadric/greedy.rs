@@ -8,11 +8,11 @@ use super::form::{Form, Quadric};
 use super::guard::Guard;
 use super::placement::Spot;
 use super::{GarlandHeckbert, Topology};
-use crate::bake::Surface;
 use crate::bake::simplify::fans::Fans;
 use crate::bake::simplify::link::{Complex, Stamps, others};
 use crate::bake::simplify::order::{along_curve, by_lowest_corner};
 use crate::bake::simplify::queue::Queue;
+use crate::bake::simplify::rebuild::{Corner, Facet, Rebuilt};
 use crate::bake::simplify::{Progress, Simplified, Stopped, Task};
 use crate::bounds::Aabb;
 
@@ -93,6 +93,8 @@ pub(super) struct Greedy<'a> {
     /// Weighted area that was contracted into each vertex.
     areas: Vec<f32>,
     triangles: Vec<[u32; 3]>,
+    /// Per triangle, the old one that it was.
+    old_triangles: Vec<u32>,
     fans: Fans,
     marks: Vec<u8>,
     choices: Vec<Choice>,
@@ -118,9 +120,9 @@ pub(super) struct Greedy<'a> {
 impl<'a> Greedy<'a> {
     /// Sums up the quadrics and fills the queue.
     pub(super) fn new(method: &'a GarlandHeckbert, task: &'a Task) -> Self {
-        let Ordered { origins, triangles, weights } = Ordered::new(task);
+        let Ordered { origins, triangles, old_triangles, weights } = Ordered::new(task);
         let count = origins.len();
-        let positions: Vec<Vec3> = origins.iter().map(|&v| task.surface.positions[v as usize]).collect();
+        let positions: Vec<Vec3> = origins.iter().map(|&v| task.mesh.positions[v as usize]).collect();
         let lock = |&v: &u32| if task.is_locked(v as usize) { mark::LOCKED } else { 0 };
         let mut greedy = Self {
             method,
@@ -134,6 +136,7 @@ impl<'a> Greedy<'a> {
             from: triangles.len(),
             live: triangles.len(),
             triangles,
+            old_triangles,
             marks: origins.iter().map(lock).collect(),
             choices: vec![Choice::default(); count],
             queue: Queue::new(),
@@ -447,7 +450,8 @@ impl<'a> Greedy<'a> {
             self.triangles[triangle as usize] = GONE;
             self.fans.remove(if p == kept { q } else { p }, triangle);
         } else {
-            self.triangles[triangle as usize] = [kept, p, q];
+            let corners = &mut self.triangles[triangle as usize];
+            *corners = corners.map(|corner| if corner == gone { kept } else { corner });
         }
         !goes
     }
@@ -468,29 +472,26 @@ impl<'a> Greedy<'a> {
     }
 
     /// What is left.
-    pub(super) fn finish(mut self, stopped: Stopped) -> Simplified {
-        self.triangles.retain(|&t| t != GONE);
-        let count = self.positions.len();
-        let mut new = vec![Simplified::GONE; count];
-        for &corner in self.triangles.as_flattened() {
-            new[corner as usize] = 0;
-        }
-        let kept: Vec<usize> = (0..count).filter(|&v| new[v] == 0).collect();
-        for (index, &vertex) in (0..).zip(&kept) {
-            new[vertex] = index;
-        }
-        let surface = Surface {
-            positions: kept.iter().map(|&v| self.positions[v]).collect(),
-            triangles: self.triangles.iter().map(|t| t.map(|v| new[v as usize])).collect(),
-        };
-        let origins = kept.iter().map(|&v| self.origins[v]).collect();
+    pub(super) fn finish(self, stopped: Stopped) -> Simplified {
+        let facets = (0..self.triangles.len()).filter(|&t| self.triangles[t] != GONE).map(|t| self.facet(t));
+        let Rebuilt { mesh, vertices, wedges, position_of } =
+            Rebuilt::new(self.task.mesh, &self.positions, facets.collect());
+        let origins = vertices.iter().map(|&v| self.origins[v as usize]).collect();
         let error = self.in_units(self.error);
-        Simplified { surface, origins, heirs: self.old_heirs(&new), error, stopped }
+        let heirs = self.old_heirs(&position_of);
+        Simplified { mesh, origins, wedge_origins: wedges, heirs, error, stopped }
+    }
+
+    fn facet(&self, triangle: usize) -> Facet {
+        let old = self.old_triangles[triangle];
+        let (vertices, wedges) = (self.triangles[triangle], self.task.mesh.triangles[old as usize]);
+        let corner = |i| Corner { vertex: vertices[i], wedge: wedges[i] };
+        Facet { old, corners: [corner(0), corner(1), corner(2)] }
     }
 
     /// Per old vertex, the new index of its last heir.
     fn old_heirs(mut self, new: &[u32]) -> Vec<u32> {
-        let mut heirs = vec![Simplified::GONE; self.task.surface.positions.len()];
+        let mut heirs = vec![Simplified::GONE; self.task.mesh.positions.len()];
         for (vertex, old) in self.order.into_iter().enumerate() {
             // An heir is lower, so its own is known already.
             self.heirs[vertex] = self.heirs[self.heirs[vertex] as usize];
@@ -516,17 +517,19 @@ struct Ordered {
     /// Per vertex that is used, its old index.
     origins: Vec<u32>,
     triangles: Vec<[u32; 3]>,
+    /// Per triangle, its old index.
+    old_triangles: Vec<u32>,
     /// Per triangle, 1 at most.
     weights: Vec<f64>,
 }
 
 impl Ordered {
     fn new(task: &Task) -> Self {
-        let old = &task.surface.triangles;
+        let old: Vec<[u32; 3]> = (0..task.mesh.triangles.len()).map(|t| task.mesh.corners(t)).collect();
         let is_triangle = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
         let kept: Vec<u32> = (0..old.len() as u32).filter(|&t| is_triangle(&old[t as usize])).collect();
-        let origins = along_curve(&task.surface.positions, kept.iter().map(|&t| old[t as usize]));
-        let mut new = vec![0; task.surface.positions.len()];
+        let origins = along_curve(&task.mesh.positions, kept.iter().map(|&t| old[t as usize]));
+        let mut new = vec![0; task.mesh.positions.len()];
         for (index, &vertex) in (0..).zip(&origins) {
             new[vertex as usize] = index;
         }
@@ -535,9 +538,11 @@ impl Ordered {
         let order = by_lowest_corner(&unsorted, origins.len());
         let most = task.weights.iter().fold(0.0, |most: f32, &w| most.max(w));
         let scale = if most > 0.0 { 1.0 / f64::from(most) } else { 1.0 };
+        let old_triangles: Vec<u32> = order.iter().map(|&i| kept[i as usize]).collect();
         Self {
             triangles: order.iter().map(|&i| unsorted[i as usize]).collect(),
-            weights: order.iter().map(|&i| task.weight(kept[i as usize] as usize) * scale).collect(),
+            weights: old_triangles.iter().map(|&t| task.weight(t as usize) * scale).collect(),
+            old_triangles,
             origins,
         }
     }

@@ -1,0 +1,140 @@
+//! From what a method leaves to a mesh: attributes, groups, and nothing that is not used.
+
+use glam::Vec3;
+
+use crate::bake::Mesh;
+use crate::bake::weld::classes;
+
+/// What a corner of a triangle has become.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Corner {
+    /// Its vertex, in the method's own numbers.
+    pub(super) vertex: u32,
+    /// The old wedge whose attributes it has.
+    pub(super) wedge: u32,
+}
+
+/// A triangle that is left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Facet {
+    /// The old triangle that it was, or whose group it is in.
+    pub(super) old: u32,
+    pub(super) corners: [Corner; 3],
+}
+
+/// A mesh of what is left.
+pub(super) struct Rebuilt {
+    pub(super) mesh: Mesh,
+    /// Per position, its vertex in the method's own numbers; ascending.
+    pub(super) vertices: Vec<u32>,
+    /// Per wedge, the old one whose attributes it has.
+    pub(super) wedges: Vec<u32>,
+    /// Per vertex in the method's own numbers, its position; [`Rebuilt::UNUSED`] where no triangle uses it.
+    pub(super) position_of: Vec<u32>,
+}
+
+impl Rebuilt {
+    pub(super) const UNUSED: u32 = u32::MAX;
+
+    /// The mesh of some facets. Corners of one vertex with one wedge become one wedge; triangles are in the order of
+    /// the old ones, so that groups stay runs. O(n log n).
+    pub(super) fn new(old: &Mesh, places: &[Vec3], mut facets: Vec<Facet>) -> Self {
+        facets.sort_by_key(|facet| facet.old);
+        let corners: Vec<Corner> = facets.iter().flat_map(|facet| facet.corners).collect();
+        let (vertices, position_of) = used(places.len(), &corners);
+        let tells_apart = old.has_attributes();
+        let look = |c: &Corner| if tells_apart { c.wedge } else { 0 };
+        let same = classes(corners.iter().map(|c| [position_of[c.vertex as usize], look(c), 0]));
+        let wedges: Vec<u32> = same.firsts.iter().map(|&first| corners[first as usize].wedge).collect();
+        let mut mesh = attributes_of(old, &wedges);
+        mesh.positions = vertices.iter().map(|&v| places[v as usize]).collect();
+        mesh.wedges =
+            same.firsts.iter().map(|&first| position_of[corners[first as usize].vertex as usize]).collect();
+        mesh.triangles = same.of.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
+        mesh.groups = groups_of(old, &facets);
+        Self { mesh, vertices, wedges, position_of }
+    }
+}
+
+/// The vertices that corners use, ascending, and their places in that list.
+fn used(vertices: usize, corners: &[Corner]) -> (Vec<u32>, Vec<u32>) {
+    let mut position_of = vec![Rebuilt::UNUSED; vertices];
+    for corner in corners {
+        position_of[corner.vertex as usize] = 0;
+    }
+    let used: Vec<u32> = (0..vertices as u32).filter(|&v| position_of[v as usize] == 0).collect();
+    for (position, &vertex) in (0..).zip(&used) {
+        position_of[vertex as usize] = position;
+    }
+    (used, position_of)
+}
+
+/// A mesh of the name and of the rows of some old wedges, without positions and triangles.
+fn attributes_of(old: &Mesh, wedges: &[u32]) -> Mesh {
+    let mut mesh = Mesh { positions: Vec::new(), triangles: Vec::new(), groups: Vec::new(), ..old.clone() };
+    mesh.keep_wedges(wedges);
+    mesh
+}
+
+/// The groups of facets in the order of the old triangles; those without a triangle go.
+fn groups_of(old: &Mesh, facets: &[Facet]) -> Vec<crate::bake::Group> {
+    let before = |triangle: usize| facets.partition_point(|facet| (facet.old as usize) < triangle);
+    let mut groups = old.groups.clone();
+    for group in &mut groups {
+        group.triangles = before(group.triangles.start)..before(group.triangles.end);
+    }
+    groups.retain(|group| !group.triangles.is_empty());
+    groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bake::Group;
+
+    fn corner(vertex: u32, wedge: u32) -> Corner {
+        Corner { vertex, wedge }
+    }
+
+    #[test]
+    fn seams_groups_and_order_are_kept() {
+        let group = |triangles| Group { triangles, ..Group::default() };
+        let old = Mesh {
+            positions: vec![Vec3::ZERO; 4],
+            wedges: vec![0, 1, 2, 3, 0],
+            normals: (0..5).map(|i| Vec3::splat(i as f32)).collect(),
+            triangles: vec![[0, 1, 2], [4, 2, 3]],
+            groups: vec![group(0..1), group(1..2)],
+            ..Mesh::default()
+        };
+        let facets = vec![
+            Facet { old: 1, corners: [corner(5, 4), corner(3, 2), corner(9, 3)] },
+            Facet { old: 0, corners: [corner(5, 0), corner(7, 1), corner(3, 2)] },
+        ];
+        let places: Vec<Vec3> = (0..10).map(|i| Vec3::X * i as f32).collect();
+        let Rebuilt { mesh, vertices, wedges, position_of } = Rebuilt::new(&old, &places, facets);
+        assert_eq!(mesh.check(), Ok(()));
+        assert_eq!((vertices, wedges), (vec![3, 5, 7, 9], vec![0, 1, 2, 4, 3]));
+        assert_eq!((position_of[5], position_of[4]), (1, Rebuilt::UNUSED));
+        assert_eq!(mesh.surface().triangles, [[1, 2, 0], [1, 0, 3]]);
+        assert_eq!(mesh.normals[mesh.triangles[1][0] as usize], Vec3::splat(4.0));
+        assert_eq!(mesh.groups, [group(0..1), group(1..2)]);
+    }
+
+    #[test]
+    fn a_group_that_is_gone_is_left_out() {
+        let group = |triangles| Group { triangles, ..Group::default() };
+        let old = Mesh {
+            positions: vec![Vec3::ZERO; 3],
+            wedges: vec![0, 1, 2],
+            triangles: vec![[0, 1, 2]; 2],
+            groups: vec![group(0..1), group(1..2)],
+            ..Mesh::default()
+        };
+        let facets = vec![Facet { old: 1, corners: [corner(0, 0), corner(1, 1), corner(2, 2)] }];
+        let rebuilt = Rebuilt::new(&old, &[Vec3::ZERO; 3], facets);
+        assert_eq!(rebuilt.mesh.groups, [group(0..1)]);
+        let none = Rebuilt::new(&old, &[], Vec::new());
+        assert_eq!((none.mesh.check(), none.mesh.wedges.len()), (Ok(()), 0));
+    }
+}
