@@ -55,7 +55,7 @@ impl<'a> Layers<'a> {
     /// The layers of a mesh whose `old` triangles, and no others, are simplified. `unit` is the longest side of the mesh
     /// in the units of `places`.
     pub(super) fn new(mesh: &'a Mesh, old: &[u32], attributes: &Attributes, scale: f64) -> Self {
-        let unit = f64::from(extent(mesh)) * scale;
+        let unit = extent(mesh) * scale;
         let has = |kind: &Kind| match kind {
             Kind::Normals => !mesh.normals.is_empty(),
             Kind::Uvs => !mesh.uvs.is_empty(),
