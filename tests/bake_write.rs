@@ -7,6 +7,7 @@ use glam::{Mat4, Quat, Vec2, Vec3, Vec4};
 use lod_budget::bake::read::{from_bytes, gltf};
 use lod_budget::bake::weld::weld;
 use lod_budget::bake::write::glb::{Node, Transform};
+use lod_budget::bake::write::sheet::{self, Chain};
 use lod_budget::bake::write::{Glb, LevelOut, Measured, glb, obj};
 use lod_budget::bake::{Format, Group, Mesh, Skin};
 use proptest::prelude::*;
@@ -430,4 +431,73 @@ fn the_runtime_reads_the_scene() {
     assert_eq!((turned.table, plain.table), (plain.table, turned.table));
     assert_ne!(other.table, plain.table);
     assert!((turned.bounds.radius / plain.bounds.radius - 2.0).abs() < 1e-6);
+}
+
+/// Whether every element of the text is closed by its own end, every attribute is in quotes, and nothing is outside.
+fn is_well_formed(text: &str) -> bool {
+    let mut open: Vec<&str> = Vec::new();
+    let mut rest = text.trim();
+    while let Some(start) = rest.find('<') {
+        let (plain, tag) = (&rest[..start], &rest[start + 1..]);
+        let Some(end) = tag.find('>') else { return false };
+        let stray = plain.contains('>') || plain.split('&').skip(1).any(|entity| !entity.contains(';'));
+        if stray || open.is_empty() && !plain.trim().is_empty() {
+            return false;
+        }
+        let inside = &tag[..end];
+        let name = inside.trim_start_matches('/').split([' ', '/']).next().unwrap_or_default();
+        match inside {
+            _ if inside.starts_with('/') && open.pop() != Some(name) => return false,
+            _ if inside.starts_with('/') || inside.ends_with('/') => {}
+            _ => open.push(name),
+        }
+        if inside.matches('"').count() % 2 == 1 || inside.contains(['<', '&']) {
+            return false;
+        }
+        rest = &tag[end + 1..];
+    }
+    open.is_empty() && rest.is_empty()
+}
+
+#[test]
+fn the_checker_of_pages_tells_good_from_bad() {
+    assert!(is_well_formed("<a b=\"c\"><d/>e&amp;<f>g</f></a>"));
+    for bad in ["<a>", "<a></b>", "<a/>b", "<a>&b</a>", "<a b=\"></a>", "<a><b></a></b>", "<a>></a>"] {
+        assert!(!is_well_formed(bad), "{bad}");
+    }
+}
+
+#[test]
+fn a_sheet_is_a_page_whatever_is_on_it() {
+    let (nothing, mut one, two) = (Mesh::default(), square(0.0), square(f32::NAN));
+    one.triangles.truncate(1);
+    one.groups[0].triangles = 0..1;
+    let levels = [&one, &nothing, &two, &square(f32::MAX), &one, &one, &one].map(LevelOut::new);
+    let chains = [
+        Chain { name: "<all> & \"none\"\u{0}", levels: &levels },
+        Chain { name: "empty", levels: &levels[1..2] },
+        Chain { name: "", levels: &[] },
+    ];
+    let page = sheet::svg(&chains).expect("drawn");
+    assert!(is_well_formed(&page), "{}", &page[..1000]);
+    assert_eq!(page.matches("<image").count(), 2 * 7 + 1);
+    assert_eq!(page.matches("class=\"mark\"").count(), 7);
+    assert!(page.contains("&lt;all&gt; &amp; \"none\""));
+    assert_eq!(sheet::svg(&chains).expect("drawn"), page);
+    assert!(is_well_formed(&sheet::svg(&[]).expect("drawn")));
+}
+
+#[test]
+fn a_picture_shows_the_mesh_on_white() {
+    let decoded = |mesh: &Mesh| {
+        let png = sheet::png(mesh, 64).expect("drawn");
+        assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+        assert_eq!(png[16..24], [0, 0, 0, 64, 0, 0, 0, 64]);
+        png
+    };
+    assert_ne!(decoded(&square(0.0)), decoded(&Mesh::default()));
+    let mut turned = square(0.0);
+    turned.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    assert_ne!(decoded(&square(0.0)), decoded(&turned), "back sides look different");
+    assert_eq!(decoded(&square(0.0)), decoded(&square(7.0)), "wherever it is");
 }

@@ -11,7 +11,7 @@
 //! | [`simplify`] | fewer triangles: the methods behind one interface |
 //! | [`shapes`] | meshes to try it on |
 //! | [`deviation`] | how far two surfaces are apart, as a bound that is proved |
-//! | [`mod@write`] | levels as OBJ and as GLB |
+//! | [`mod@write`] | levels as OBJ, as GLB and as pictures |
 
 pub mod deviation;
 pub mod finding;

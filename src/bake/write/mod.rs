@@ -1,9 +1,11 @@
-//! What a bake leaves behind: [`obj()`] for a level by itself, [`mod@glb`] for all levels of an object or a scene.
+//! What a bake leaves behind: [`obj()`] for a level by itself, [`mod@glb`] for all levels of an object or a scene, and
+//! [`sheet`] for people.
 //!
 //! Everything is made in memory; whoever asks for it puts it on disk. The same meshes give the same bytes.
 
 pub mod glb;
 pub mod obj;
+pub mod sheet;
 
 pub use glb::{Glb, GlbError, glb};
 pub use obj::obj;
