@@ -469,10 +469,10 @@ fn the_checker_of_pages_tells_good_from_bad() {
 
 #[test]
 fn a_sheet_is_a_page_whatever_is_on_it() {
-    let (nothing, mut one, two) = (Mesh::default(), square(0.0), square(f32::NAN));
+    let (nothing, mut one, two, far) = (Mesh::default(), square(0.0), square(f32::NAN), square(f32::MAX));
     one.triangles.truncate(1);
     one.groups[0].triangles = 0..1;
-    let levels = [&one, &nothing, &two, &square(f32::MAX), &one, &one, &one].map(LevelOut::new);
+    let levels = [&one, &nothing, &two, &far, &one, &one, &one].map(LevelOut::new);
     let chains = [
         Chain { name: "<all> & \"none\"\u{0}", levels: &levels },
         Chain { name: "empty", levels: &levels[1..2] },
