@@ -36,6 +36,7 @@ use std::fmt;
 
 use crate::bake::surface::Surface;
 
+pub mod attributes;
 mod bvh;
 mod facet;
 mod hausdorff;
@@ -163,11 +164,19 @@ impl Ruler {
     pub fn deviation(&self, surface: &Surface, options: &Options) -> Result<Deviation, DeviationError> {
         options.check()?;
         let other = Shape::new(surface, self.origin)?;
-        match (self.shape.is_empty(), other.is_empty()) {
-            _ if self.shape.corners == other.corners => Ok(Deviation::default()),
-            (false, false) => Ok(measure(&self.shape, &other, options)),
-            _ => Err(DeviationError::OneIsEmpty),
+        if nothing_in(&self.shape, &other)? || self.shape.corners == other.corners {
+            return Ok(Deviation::default());
         }
+        Ok(measure(&self.shape, &other, options))
+    }
+}
+
+/// Whether there is nothing to measure.
+fn nothing_in(first: &Shape, second: &Shape) -> Result<bool, DeviationError> {
+    match (first.is_empty(), second.is_empty()) {
+        (true, true) => Ok(true),
+        (false, false) => Ok(false),
+        _ => Err(DeviationError::OneIsEmpty),
     }
 }
 
