@@ -91,7 +91,7 @@ pub fn deviation(
     let surfaces = [first, second].map(Mesh::surface);
     let origin = shape::origin(&surfaces[0]);
     let shapes = [Shape::new(&surfaces[0], origin)?, Shape::new(&surfaces[1], origin)?];
-    if nothing_in(&shapes[0], &shapes[1])? {
+    if nothing_in(shapes.each_ref().map(Shape::is_empty))? {
         return Ok(AttributeDeviation::default());
     }
     let [first, second] = [Side::new(first, &shapes[0]), Side::new(second, &shapes[1])];

@@ -44,6 +44,7 @@ mod overlay;
 mod piece;
 mod sampling;
 mod shape;
+pub mod silhouette;
 
 use hausdorff::Extent;
 pub use sampling::Spread;
@@ -164,16 +165,16 @@ impl Ruler {
     pub fn deviation(&self, surface: &Surface, options: &Options) -> Result<Deviation, DeviationError> {
         options.check()?;
         let other = Shape::new(surface, self.origin)?;
-        if nothing_in(&self.shape, &other)? || self.shape.corners == other.corners {
+        if nothing_in([self.shape.is_empty(), other.is_empty()])? || self.shape.corners == other.corners {
             return Ok(Deviation::default());
         }
         Ok(measure(&self.shape, &other, options))
     }
 }
 
-/// Whether there is nothing to measure.
-fn nothing_in(first: &Shape, second: &Shape) -> Result<bool, DeviationError> {
-    match (first.is_empty(), second.is_empty()) {
+/// Whether there is nothing to measure, by which surfaces are empty.
+fn nothing_in(empty: [bool; 2]) -> Result<bool, DeviationError> {
+    match empty.into() {
         (true, true) => Ok(true),
         (false, false) => Ok(false),
         _ => Err(DeviationError::OneIsEmpty),
