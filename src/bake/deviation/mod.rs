@@ -38,6 +38,8 @@ use crate::bake::surface::Surface;
 
 pub mod attributes;
 mod bvh;
+#[cfg(test)]
+mod exact;
 mod facet;
 mod hausdorff;
 mod overlay;

@@ -26,12 +26,13 @@ impl Mask {
     pub(super) fn set(&mut self, row: usize, first: usize, last: usize) {
         let last = last.min(self.columns - 1);
         let words = &mut self.words[row * self.words_per_row..];
-        for (word, bits) in words.iter_mut().enumerate().take(last / 64 + 1).skip(first / 64) {
-            let from = first.saturating_sub(64 * word);
-            let to = (last - 64 * word).min(63);
-            if from <= to {
-                *bits |= (u64::MAX << from) & (u64::MAX >> (63 - to));
-            }
+        let (from, to) = (u64::MAX << (first % 64), u64::MAX >> (63 - last % 64));
+        if first / 64 == last / 64 {
+            words[first / 64] |= from & to;
+        } else if first < last {
+            words[first / 64] |= from;
+            words[first / 64 + 1..last / 64].fill(u64::MAX);
+            words[last / 64] |= to;
         }
     }
 

@@ -118,16 +118,35 @@ pub fn deviation(
     if nothing_in([first, second].map(|surface| surface.triangles.is_empty()))? {
         return Ok(SilhouetteDeviation::default());
     }
-    let view = |direction: &DVec3| view([first, second], *direction, options.resolution);
+    let figures = [first, second].map(used);
+    let view = |direction: &DVec3| view(&figures, *direction, options.resolution);
     Ok(SilhouetteDeviation { views: DIRECTIONS.iter().map(view).collect() })
 }
 
+/// The surface without the vertices that no triangle uses.
+fn used(surface: &Surface) -> Surface {
+    let mut numbers = vec![u32::MAX; surface.positions.len()];
+    let mut used = Surface::default();
+    for corners in &surface.triangles {
+        used.triangles.push(corners.map(|vertex| {
+            let number = &mut numbers[vertex as usize];
+            if *number == u32::MAX {
+                *number = used.positions.len() as u32;
+                used.positions.push(surface.positions[vertex as usize]);
+            }
+            *number
+        }));
+    }
+    used
+}
+
 /// Draws both surfaces on one sheet and measures how far apart they are.
-fn view(surfaces: [&Surface; 2], direction: DVec3, resolution: usize) -> View {
-    let axes = direction.normalize().any_orthonormal_pair();
-    let shadows = surfaces.map(|surface| shadow(surface, axes));
-    let frame = Frame::around(shadows.iter().flatten().flatten(), resolution);
-    let [first, second] = shadows.map(|shadow| frame.draw(&shadow));
+fn view(figures: &[Surface; 2], direction: DVec3, resolution: usize) -> View {
+    let (right, up) = direction.normalize().any_orthonormal_pair();
+    let flat = |p: &Vec3| DVec2::new(p.as_dvec3().dot(right), p.as_dvec3().dot(up));
+    let shadows = figures.each_ref().map(|figure| figure.positions.iter().map(flat).collect::<Vec<DVec2>>());
+    let frame = Frame::around(shadows.iter().flatten(), resolution);
+    let [first, second] = [0, 1].map(|side| frame.draw(&shadows[side], &figures[side].triangles));
     let far2 = farthest2(&first.touched, &second.touched).max(farthest2(&second.touched, &first.touched));
     let area = |drawn: &Drawing| drawn.covered.count() as f64 * frame.pixel * frame.pixel;
     View {
@@ -135,13 +154,6 @@ fn view(surfaces: [&Surface; 2], direction: DVec3, resolution: usize) -> View {
         error: 1.5 * frame.pixel,
         areas: [area(&first), area(&second)],
     }
-}
-
-/// The triangles along a direction, in object units.
-fn shadow(surface: &Surface, (right, up): (DVec3, DVec3)) -> Vec<[DVec2; 3]> {
-    let flat = |p: &Vec3| DVec2::new(p.as_dvec3().dot(right), p.as_dvec3().dot(up));
-    let points: Vec<DVec2> = surface.positions.iter().map(flat).collect();
-    surface.triangles.iter().map(|corners| corners.map(|vertex| points[vertex as usize])).collect()
 }
 
 /// The largest squared distance from a pixel of `from` to the nearest one of `to`, in pixels.
