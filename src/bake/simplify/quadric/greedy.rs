@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use glam::{DVec3, Vec3};
 
 use super::form::{Form, Quadric};
-use super::guard::Guard;
+use super::guard::{Facing, Guard};
 use super::layer::{Around, Move};
 use super::layers::Layers;
 use super::placement::Spot;
@@ -100,6 +100,8 @@ pub(super) struct Greedy<'a> {
     triangles: Vec<[u32; 3]>,
     /// Per triangle, the old one that it was.
     old_triangles: Vec<u32>,
+    /// Per triangle, where it faced before all contractions.
+    facings: Vec<Facing>,
     fans: Fans,
     /// The attributes, if there are any.
     layers: Option<Layers<'a>>,
@@ -147,6 +149,7 @@ impl<'a> Greedy<'a> {
             fans: Fans::new(count, &triangles),
             from: triangles.len(),
             live: triangles.len(),
+            facings: vec![Facing::default(); triangles.len()],
             triangles,
             old_triangles,
             layers,
@@ -180,6 +183,7 @@ impl<'a> Greedy<'a> {
             let normal = across.normalize_or_zero();
             let area = 0.5 * weight * across.length();
             let plane = Quadric::plane(normal, area);
+            self.facings[t] = Facing::new(normal);
             for corner in corners {
                 self.quadrics[corner as usize].add(&plane);
                 self.areas[corner as usize] += area as f32;
@@ -501,7 +505,8 @@ impl<'a> Greedy<'a> {
         let from = self.place(vertex);
         self.fans.of(vertex).iter().all(|&t| {
             let [p, q] = others(self.triangles[t as usize], vertex);
-            p == other || q == other || self.guard.allows(from, to, self.place(p), self.place(q))
+            let side = || [self.place(p), self.place(q)];
+            p == other || q == other || self.guard.allows(from, to, side(), self.facings[t as usize])
         })
     }
 
