@@ -15,14 +15,13 @@ import vtk
 
 def contestants(program, variants):
     """By name, with their other settings if wanted."""
-    own = ["lod-budget", "meshoptimizer-update", "meshoptimizer"]
+    own = ["lod-budget", "lod-budget-free", "meshoptimizer-update", "meshoptimizer"]
     plain = {
         **{name: functools.partial(by_call, program, name) for name in own},
         "vtk": functools.partial(by_vtk, volume_preservation=False),
         "meshlab": functools.partial(by_meshlab, preservetopology=False),
     }
     other = {
-        "lod-budget-free": functools.partial(by_call, program, "lod-budget-free"),
         "vtk-volume": functools.partial(by_vtk, volume_preservation=True),
         "meshlab-topology": functools.partial(by_meshlab, preservetopology=True),
     }

@@ -10,7 +10,9 @@ import re
 import subprocess
 import typing
 
-OURS, UPDATE = "lod-budget", "meshoptimizer-update"
+import deviation
+
+OURS, FREE, UPDATE = "lod-budget", "lod-budget-free", "meshoptimizer-update"
 BEST = ["vtk", "meshlab"]
 """Whose quality is the goal."""
 
@@ -20,7 +22,7 @@ NAMES = {
     "meshlab": "MeshLab",
     UPDATE: "meshoptimizer, with update",
     "meshoptimizer": "meshoptimizer",
-    "lod-budget-free": "lod-budget, `Topology::Free`",
+    FREE: "lod-budget, `Topology::Free`",
     "vtk-volume": "VTK, volume preservation",
     "meshlab-topology": "MeshLab, topology preserved",
 }
@@ -51,20 +53,22 @@ def fill(page, results, rounds):
         "meshes": results.original_triangles(),
         **{goal.place: results.table(goal) for goal in GOALS},
         "losses": results.losses(),
+        "free_losses": Results(results.rows, FREE).losses(),
         "others": results.others(),
         "bounds": results.bounds(),
         "figures": results.figures(),
         "rounds": str(rounds),
+        "samples": f"{deviation.SAMPLES:_}".replace("_", " "),
         "facts": "\n".join(f"| {name} | {value} |" for name, value in facts() if value),
     }
     return re.sub(r"\{(\w+)\}", lambda place: parts[place[1]], page)
 
 
 class Results:
-    """Rows by level, which is a mesh and a share, and by contestant."""
+    """Rows by level, which is a mesh and a share, and by contestant, one of whom is ours."""
 
-    def __init__(self, rows):
-        self.levels = {}
+    def __init__(self, rows, ours=OURS):
+        self.rows, self.ours, self.levels = rows, ours, {}
         for row in rows:
             self.levels.setdefault((row["mesh"], row["share"]), {})[row["contestant"]] = row
         self.meshes = list(dict.fromkeys(mesh for mesh, _ in self.levels))
@@ -90,7 +94,7 @@ class Results:
         """Ours ÷ the smallest of theirs; not a number where that is not known."""
         rows = self.levels.get(level, {})
         least = min((rows[name][figure] for name in others if name in rows), default=0)
-        return rows[OURS][figure] / least if OURS in rows and least else math.nan
+        return rows[self.ours][figure] / least if self.ours in rows and least else math.nan
 
     def table(self, goal):
         """A row per mesh, a column per share; what misses the goal is bold."""
