@@ -3,19 +3,25 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Bits of a cost that its bucket leaves out: three bits of the mantissa are left, so that costs within one bucket are
-/// less than 13 % apart. With fewer buckets sorting leaves the cache, with more there is little to look ahead to.
-const FINE_BITS: u32 = 20;
+/// Bits of a cost that its bucket leaves out: two bits of the mantissa are left, so that costs within one bucket are
+/// less than 26 % apart. With fewer buckets the order is too rough, with more there is too little in each.
+const FINE_BITS: u32 = 21;
 
-/// Items in the order of their cost, ties by the lower item: a bucket for each range of costs, of which only the
-/// lowest is sorted.
+/// A bucket with more items is taken in their own order, whatever their costs.
+const CROWD: usize = 1024;
+
+/// Items in the order of their cost, ties by the lower item, but for buckets of many items whose costs differ little:
+/// those are taken in the order of the items themselves.
 ///
 /// Costs that a simplification puts back are mostly above the one it took last, so nearly all go to the end of some
-/// bucket, and what comes next is known in advance. The order is that of one big heap.
+/// bucket, and what comes next is known in advance. Items are numbered along a curve through space, so that a crowded
+/// bucket is a walk through memory, where in the order of costs every step would wait for another place of it.
 pub(super) struct Queue {
     /// The bucket that items are taken from: the costs and items that it had when its turn came, from the last to the
     /// first.
     current: Vec<Key>,
+    /// Whether that is in the order of the items.
+    is_crowd: bool,
     /// Which bucket that is.
     turn: usize,
     /// Costs and items that came too late for their buckets.
@@ -30,7 +36,13 @@ type Key = Reverse<u64>;
 impl Queue {
     pub(super) fn new() -> Self {
         let buckets = (f32::INFINITY.to_bits() >> FINE_BITS) as usize + 1;
-        Self { current: Vec::new(), turn: 0, late: BinaryHeap::new(), far: vec![Vec::new(); buckets] }
+        Self {
+            current: Vec::new(),
+            is_crowd: false,
+            turn: 0,
+            late: BinaryHeap::new(),
+            far: vec![Vec::new(); buckets],
+        }
     }
 
     /// Adds an item. Costs are ≥ 0 and may be infinite; one that is negative or not a number counts as infinite.
@@ -41,16 +53,26 @@ impl Queue {
         if bucket <= self.turn { self.late.push(key) } else { self.far[bucket].push(key) }
     }
 
-    /// Takes the item of the lowest cost.
+    /// Takes the next item, and says what it costs.
     pub(super) fn pop(&mut self) -> Option<(f32, u32)> {
         if self.current.is_empty() && self.late.is_empty() {
             self.turn = (self.turn + 1..self.far.len()).find(|&b| !self.far[b].is_empty())?;
             self.current = std::mem::take(&mut self.far[self.turn]);
+            self.is_crowd = self.current.len() > CROWD;
+            self.sort();
+        }
+        let is_late = self.is_crowd || self.late.peek() > self.current.last();
+        let late = if is_late { self.late.pop() } else { None };
+        let key = late.or_else(|| self.current.pop());
+        key.map(|Reverse(key)| (f32::from_bits((key >> 32) as u32), key as u32))
+    }
+
+    fn sort(&mut self) {
+        if self.is_crowd {
+            self.current.sort_unstable_by_key(|&Reverse(key)| Reverse(key as u32));
+        } else {
             self.current.sort_unstable();
         }
-        let is_late = self.late.peek() > self.current.last();
-        let key = if is_late { self.late.pop() } else { self.current.pop() };
-        key.map(|Reverse(key)| (f32::from_bits((key >> 32) as u32), key as u32))
     }
 
     /// The items so many places ahead as far as is known: some may come in before them, and where there are not so
@@ -88,6 +110,19 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Costs that are 26 % apart or more keep their order, and in a crowd items do.
+    #[test]
+    fn a_crowd_comes_in_the_order_of_its_items() {
+        let mut queue = Queue::new();
+        let crowd = 2 * CROWD as u32;
+        queue.push(2.0, crowd);
+        (0..crowd).rev().for_each(|item| queue.push(1.0 + 0.2 * (item % 7) as f32 / 7.0, item));
+        queue.push(0.5, crowd + 1);
+        let items: Vec<u32> = std::iter::from_fn(|| queue.pop()).map(|(_, item)| item).collect();
+        let expected: Vec<u32> = [crowd + 1].into_iter().chain(0..crowd).chain([crowd]).collect();
+        assert_eq!(items, expected);
     }
 
     #[test]

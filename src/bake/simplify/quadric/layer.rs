@@ -226,8 +226,12 @@ impl Layer {
         gone.iter().map(|wedge| of(wedge).seen_from(-edge)).fold(kept, Linear::plus)
     }
 
-    /// The wedges of both ends, those together that meet in a triangle at the edge.
+    /// The wedges of both ends, those together that meet in a triangle at the edge, or that are the only ones.
     fn groups(&self, around: Around, kept: u32, gone: u32) -> Vec<Group> {
+        let only = [self.only[kept as usize], self.only[gone as usize]];
+        if !only.contains(&SEVERAL) {
+            return vec![Group { kept: vec![only[0]], gone: vec![only[1]] }];
+        }
         let mut groups: Vec<Group> = Vec::new();
         for triangle in around.edge(kept, gone) {
             let [k, g] = [kept, gone].map(|v| self.at(around, triangle, v));

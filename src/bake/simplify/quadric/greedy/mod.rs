@@ -1,0 +1,387 @@
+//! The greedy: contract the edge that costs least, until there are few enough triangles.
+
+mod outcome;
+mod prepare;
+mod step;
+mod verdict;
+
+use std::hint::black_box;
+use std::ops::ControlFlow;
+
+use glam::{DVec3, Vec3};
+
+use step::Step;
+use verdict::Verdict;
+
+use crate::bake::simplify::fans::Fans;
+use crate::bake::simplify::link::{Stamps, others};
+use crate::bake::simplify::quadric::form::Quadric;
+use crate::bake::simplify::quadric::guard::{Facing, Guard};
+use crate::bake::simplify::quadric::layer::{Around, Move};
+use crate::bake::simplify::quadric::layers::Layers;
+use crate::bake::simplify::quadric::pairs::Pairs;
+use crate::bake::simplify::quadric::{GarlandHeckbert, Topology};
+use crate::bake::simplify::queue::Queue;
+use crate::bake::simplify::{Progress, Stopped, Target, Task};
+
+/// A vertex in more triangles waits until they are fewer: every contraction walks around both ends, and a fan of a
+/// hundred thousand would make that quadratic.
+const LARGEST_FAN: usize = 1024;
+
+/// How many looks at the queue pass between two calls of the progress callback.
+const STRIDE: usize = 4096;
+
+/// The queue is filled again while at least one in so many vertices was contracted since it was.
+const WORTH_A_SWEEP: usize = 64;
+
+/// A triangle that went.
+const GONE: [u32; 3] = [u32::MAX; 3];
+
+/// What is known of a vertex, one bit each.
+mod mark {
+    /// It was contracted into another.
+    pub const GONE: u8 = 1;
+    /// An edge of it has changed since its choice was made, which may now cost more or be gone.
+    pub const DIRTY: u8 = 2;
+    /// It has no choice and is not in the queue.
+    pub const IDLE: u8 = 4;
+    /// Something cheaper than its choice, or all it had, was refused.
+    pub const SETTLED: u8 = 64;
+    /// It must stay where it is.
+    pub const LOCKED: u8 = 8;
+    /// It is on an edge that has not exactly two triangles.
+    pub const BORDER: u8 = 16;
+    /// It is on an edge that does not have as many triangles in either direction.
+    pub const ODD: u8 = 32;
+    /// It is on a seam that is held.
+    pub const SEAM: u8 = 128;
+    /// What a vertex has from those that are contracted into it.
+    pub const INHERITED: u8 = LOCKED | BORDER | ODD | SEAM;
+}
+
+/// A contraction of a vertex, with one of higher index: the bits of its cost, then the partner, so that whole numbers
+/// order them by cost and then by partner.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct Choice(u64);
+
+impl Choice {
+    /// The choice after all others.
+    const NONE: Self = Self(u64::MAX);
+
+    /// A cost that is not a number comes last.
+    #[inline]
+    fn new(cost: f32, partner: u32) -> Self {
+        Self(u64::from(cost.abs().to_bits()) << 32 | u64::from(partner))
+    }
+
+    fn cost(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+
+    fn partner(self) -> u32 {
+        self.0 as u32
+    }
+}
+
+/// A simplification on its way. Every edge belongs to its lower end, which is in the queue with the cheapest of its
+/// edges and survives the contraction.
+///
+/// Vertices are in the order of a curve through space, not in that of the task; only [`Greedy::order`] and
+/// [`Greedy::origins`] name old ones.
+pub(super) struct Greedy<'a> {
+    method: &'a GarlandHeckbert,
+    task: &'a Task<'a>,
+    guard: Guard,
+    /// A power of two that makes places of positions, some units around.
+    scale: f64,
+    positions: Vec<Vec3>,
+    quadrics: Vec<Quadric>,
+    /// Weighted area that was contracted into each vertex.
+    areas: Vec<f32>,
+    triangles: Vec<[u32; 3]>,
+    /// Per triangle, the old one that it was.
+    old_triangles: Vec<u32>,
+    /// Per triangle, where it faced before all contractions.
+    facings: Vec<Facing>,
+    fans: Fans,
+    /// What may be contracted besides edges, if anything.
+    pairs: Option<Pairs>,
+    /// The attributes, if there are any.
+    layers: Option<Layers<'a>>,
+    marks: Vec<u8>,
+    choices: Vec<Choice>,
+    queue: Queue,
+    stamps: Stamps,
+    /// Per vertex, the old vertex it was.
+    order: Vec<u32>,
+    /// Per vertex, the old vertex it stems from by now.
+    origins: Vec<u32>,
+    /// Per vertex, what it was contracted into, or itself.
+    heirs: Vec<u32>,
+    /// How many triangles there were, and are.
+    from: usize,
+    live: usize,
+    /// Whether changes of topology have no price any more.
+    is_free: bool,
+    /// The largest error that a step may have by now, in object units; negative before the first run.
+    most: f32,
+    /// Largest squared error so far, scaled.
+    error: f64,
+    /// The fan of a contracted vertex, in the making.
+    fan: Vec<u32>,
+    /// What a vertex may be contracted with.
+    partners: Vec<u32>,
+}
+
+impl<'a> Greedy<'a> {
+    #[inline]
+    fn place(&self, vertex: u32) -> DVec3 {
+        self.positions[vertex as usize].as_dvec3() * self.scale
+    }
+
+    fn around(&self) -> Around<'_> {
+        Around { triangles: &self.triangles, fans: &self.fans }
+    }
+
+    /// Puts every vertex into the queue that is not there; returns how many are.
+    fn sweep(&mut self) -> usize {
+        let present = (0..self.marks.len() as u32).filter(|&v| !self.fans.of(v).is_empty());
+        let present: Vec<u32> = present.collect();
+        for &vertex in &present {
+            self.choose(vertex, None);
+        }
+        present.len()
+    }
+
+    /// Contracts until there are few enough triangles.
+    pub(super) fn run(
+        &mut self,
+        target: Target,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Stopped {
+        // What was too dear before may not be now.
+        if target.error > self.most {
+            self.sweep();
+        }
+        self.most = target.error;
+        let target = target.triangles;
+        let mut since_sweep = 0;
+        let mut present = 0;
+        for look in 1.. {
+            if self.live <= target {
+                return Stopped::Triangles;
+            }
+            let so_far = Progress { from: self.from, triangles: self.live, target };
+            if look % STRIDE == 0 && progress(so_far).is_break() {
+                return Stopped::Cancelled;
+            }
+            self.read_ahead();
+            match self.queue.pop() {
+                Some((_, vertex)) => since_sweep += usize::from(self.look_at(vertex)),
+                None if since_sweep * WORTH_A_SWEEP > present => {
+                    since_sweep = 0;
+                    present = self.sweep();
+                }
+                None if self.method.topology == Topology::Free && !self.is_free => {
+                    self.is_free = true;
+                    present = self.sweep();
+                }
+                None => break,
+            }
+        }
+        Stopped::Exhausted
+    }
+
+    /// Reads what the next looks will need, so that it is in the cache when their turn comes: they are all over the
+    /// mesh, and simplification waits for memory more than for anything else. What is found by what was read has to
+    /// wait for the next stage.
+    #[inline]
+    fn read_ahead(&self) {
+        let Some([far, near, next]) = self.queue.ahead([14, 10, 6]) else { return };
+        let partner = |vertex: u32| self.choices[vertex as usize].partner();
+        let any_triangle = |vertex| self.fans.of(vertex).first().map_or(0, |&t| t);
+        let corner = |&t: &u32| self.triangles[t as usize][0];
+        let bits = self.read(far) ^ partner(far) ^ any_triangle(near) ^ self.read(partner(near));
+        let corners = self.fans.of(next).iter().fold(0, |bits, t| bits ^ corner(t));
+        black_box(bits ^ any_triangle(partner(next)) ^ corners);
+    }
+
+    /// Some bits of all that is kept of a vertex itself.
+    #[inline]
+    fn read(&self, vertex: u32) -> u32 {
+        let at = vertex as usize;
+        let marks = u32::from(self.marks[at]) ^ self.fans.of(vertex).len() as u32;
+        marks ^ self.positions[at].x.to_bits() ^ self.quadrics[at].bits()
+    }
+
+    /// Contracts the choice of a vertex if it still stands and may be; returns whether it did.
+    fn look_at(&mut self, vertex: u32) -> bool {
+        let marks = &mut self.marks[vertex as usize];
+        if *marks & mark::GONE != 0 {
+            return false;
+        }
+        if *marks & mark::DIRTY != 0 {
+            *marks &= !mark::DIRTY;
+            self.choose(vertex, None);
+            return false;
+        }
+        let choice = self.choices[vertex as usize];
+        let step = self.step(vertex, choice.partner());
+        let may = self.may_contract(&step);
+        match may {
+            Verdict::Yes => self.contract(&step),
+            Verdict::No => self.choose(vertex, Some(choice)),
+            Verdict::For(price) => self.put_off(vertex, choice, price),
+        }
+        matches!(may, Verdict::Yes)
+    }
+
+    /// Has a vertex come again with the next of its choices, or with this one at a price if that is less.
+    fn put_off(&mut self, vertex: u32, choice: Choice, price: f32) {
+        let next = self.cheapest(vertex, Choice(choice.0 + 1));
+        self.marks[vertex as usize] |= mark::SETTLED;
+        self.choices[vertex as usize] = next.min(Choice::new(price, choice.partner()));
+        self.queue.push(self.choices[vertex as usize].cost(), vertex);
+    }
+
+    /// Chooses the cheapest contraction of a vertex above that one, and puts it into the queue.
+    fn choose(&mut self, vertex: u32, above: Option<Choice>) {
+        let choice = self.cheapest(vertex, above.map_or(Choice(0), |Choice(c)| Choice(c + 1)));
+        let marks = &mut self.marks[vertex as usize];
+        *marks &= !(mark::IDLE | mark::SETTLED);
+        *marks |= if above.is_some() { mark::SETTLED } else { 0 };
+        if choice == Choice::NONE {
+            *marks |= mark::IDLE;
+            return;
+        }
+        self.choices[vertex as usize] = choice;
+        self.queue.push(choice.cost(), vertex);
+    }
+
+    /// The cheapest contraction of a vertex from that one on.
+    ///
+    /// Where every edge has as many triangles in either direction it is enough to look at one corner of each.
+    fn cheapest(&mut self, vertex: u32, from: Choice) -> Choice {
+        let fan = self.fans.of(vertex);
+        if fan.is_empty() || fan.len() > LARGEST_FAN {
+            return Choice::NONE;
+        }
+        let is_odd = self.marks[vertex as usize] & mark::ODD != 0;
+        let mut partners = std::mem::take(&mut self.partners);
+        partners.clear();
+        let sides = fan.iter().map(|&t| others(self.triangles[t as usize], vertex));
+        if is_odd {
+            partners.extend(sides.flatten().filter(|&p| p > vertex));
+        } else {
+            partners.extend(sides.map(|[p, _]| p).filter(|&p| p > vertex));
+        }
+        if let Some(pairs) = &self.pairs {
+            let is_left = |p: &&u32| **p > vertex && !self.fans.of(**p).is_empty();
+            partners.extend(pairs.of(vertex).iter().filter(is_left));
+        }
+        // All are read before any is needed: one wait instead of one for each.
+        black_box(partners.iter().fold(0, |bits, &p| bits ^ self.quadrics[p as usize].bits()));
+        let mut cheapest = Choice::NONE;
+        for &partner in &partners {
+            let choice = Choice::new(self.cost(vertex, partner), partner);
+            cheapest = if choice >= from { cheapest.min(choice) } else { cheapest };
+        }
+        self.partners = partners;
+        cheapest
+    }
+
+    /// Contracts `gone` into `kept`.
+    fn contract(&mut self, step: &Step) {
+        let Move { kept: heir, gone: parted, .. } = step.way;
+        let (kept, gone) = (heir as usize, parted as usize);
+        if let Some(layers) = &mut self.layers {
+            layers.contract(Around { triangles: &self.triangles, fans: &self.fans }, &step.way);
+        }
+        if step.position == self.positions[gone] {
+            self.origins[kept] = self.origins[gone];
+        }
+        self.positions[kept] = step.position;
+        self.quadrics[kept] = step.quadric;
+        self.areas[kept] += self.areas[gone];
+        self.error = self.error.max(step.error);
+        self.heirs[gone] = heir;
+        self.marks[kept] |= self.marks[gone] & mark::INHERITED;
+        self.merge_fans(heir, parted);
+        self.merge_pairs(heir, parted);
+        self.marks[gone] = mark::GONE;
+        self.choose(heir, None);
+    }
+
+    /// Gives `kept` the triangles of both but for those at the edge, which go.
+    fn merge_fans(&mut self, kept: u32, gone: u32) {
+        let mut fan = std::mem::take(&mut self.fan);
+        fan.clear();
+        fan.extend_from_slice(self.fans.of(kept));
+        fan.retain(|&t| self.keeps(t, kept, gone));
+        let first_of_gone = fan.len();
+        fan.extend_from_slice(self.fans.of(gone));
+        let mut at = first_of_gone;
+        for i in first_of_gone..fan.len() {
+            if self.hand_over(fan[i], kept, gone) {
+                fan[at] = fan[i];
+                at += 1;
+            }
+        }
+        fan.truncate(at);
+        self.fans.replace(gone, &[]);
+        self.fans.replace(kept, &fan);
+        self.fan = fan;
+    }
+
+    /// Gives `kept` the pairs of both.
+    fn merge_pairs(&mut self, kept: u32, gone: u32) {
+        let Some(mut pairs) = self.pairs.take() else { return };
+        for &partner in pairs.of(kept).iter().chain(pairs.of(gone)) {
+            if partner != kept && partner != gone {
+                self.disturb(partner, kept, gone);
+            }
+        }
+        pairs.contract(kept, gone);
+        self.pairs = Some(pairs);
+    }
+
+    /// Whether a triangle of `kept` stays one.
+    fn keeps(&mut self, triangle: u32, kept: u32, gone: u32) -> bool {
+        let [p, q] = others(self.triangles[triangle as usize], kept);
+        self.disturb(p, kept, gone);
+        self.disturb(q, kept, gone);
+        (p != gone) & (q != gone)
+    }
+
+    /// Makes a triangle of `gone` one of `kept`, or removes it; returns whether it stays.
+    fn hand_over(&mut self, triangle: u32, kept: u32, gone: u32) -> bool {
+        let [p, q] = others(self.triangles[triangle as usize], gone);
+        let goes = (p == kept) | (q == kept);
+        self.disturb(p, kept, gone);
+        self.disturb(q, kept, gone);
+        if goes {
+            self.live -= 1;
+            self.triangles[triangle as usize] = GONE;
+            self.fans.remove(if p == kept { q } else { p }, triangle);
+        } else {
+            let corners = &mut self.triangles[triangle as usize];
+            *corners = corners.map(|corner| if corner == gone { kept } else { corner });
+        }
+        !goes
+    }
+
+    /// Has a neighbour of a contraction choose again, when its turn comes, if its choice is one of the two or if it had
+    /// to settle for one. Any other choice is still its cheapest, since what has changed only became dearer.
+    #[inline]
+    fn disturb(&mut self, vertex: u32, kept: u32, gone: u32) {
+        let marks = &mut self.marks[vertex as usize];
+        let choice = self.choices[vertex as usize];
+        let is_meant =
+            (choice.partner() == kept) | (choice.partner() == gone) | (*marks & mark::SETTLED != 0);
+        *marks |= mark::DIRTY * u8::from(is_meant);
+        if *marks & (mark::IDLE | mark::DIRTY) == mark::IDLE | mark::DIRTY {
+            *marks &= !mark::IDLE;
+            self.queue.push(choice.cost(), vertex);
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! Before the first contraction: an order for the memory, quadrics, borders and seams.
+
+use glam::{DVec3, Vec3};
+
+use super::{Choice, Greedy, mark};
+use crate::bake::simplify::Task;
+use crate::bake::simplify::fans::Fans;
+use crate::bake::simplify::link::{Complex, Stamps, others};
+use crate::bake::simplify::order::{along_curve, by_lowest_corner};
+use crate::bake::simplify::quadric::form::Quadric;
+use crate::bake::simplify::quadric::guard::{Facing, Guard};
+use crate::bake::simplify::quadric::layers::Layers;
+use crate::bake::simplify::quadric::pairs::Pairs;
+use crate::bake::simplify::quadric::{GarlandHeckbert, Topology};
+use crate::bake::simplify::queue::Queue;
+use crate::bounds::Aabb;
+
+impl<'a> Greedy<'a> {
+    /// Sums up the quadrics and fills the queue.
+    pub(in crate::bake::simplify::quadric) fn new(method: &'a GarlandHeckbert, task: &'a Task) -> Self {
+        let Ordered { origins, triangles, old_triangles, weights } = Ordered::new(task);
+        let count = origins.len();
+        let positions: Vec<Vec3> = origins.iter().map(|&v| task.mesh.positions[v as usize]).collect();
+        let lock = |&v: &u32| if task.is_locked(v as usize) { mark::LOCKED } else { 0 };
+        let scale = scale_of(&positions);
+        let layers =
+            task.mesh.has_seams().then(|| Layers::new(task.mesh, &old_triangles, &method.attributes, scale));
+        let mut greedy = Self {
+            method,
+            task,
+            guard: Guard::new(method.least_turn, method.least_shape),
+            scale,
+            positions,
+            quadrics: vec![Quadric::default(); count],
+            areas: vec![0.0; count],
+            fans: Fans::new(count, &triangles),
+            from: triangles.len(),
+            live: triangles.len(),
+            facings: vec![Facing::default(); triangles.len()],
+            triangles,
+            old_triangles,
+            pairs: None,
+            layers,
+            marks: origins.iter().map(lock).collect(),
+            choices: vec![Choice::default(); count],
+            queue: Queue::new(),
+            stamps: Stamps::new(count),
+            order: origins.clone(),
+            origins,
+            heirs: (0..count as u32).collect(),
+            is_free: false,
+            most: -1.0,
+            error: 0.0,
+            fan: Vec::new(),
+            partners: Vec::new(),
+        };
+        greedy.sum_up(&weights);
+        greedy.find_pairs();
+        greedy
+    }
+
+    /// Finds what may be contracted besides edges.
+    fn find_pairs(&mut self) {
+        let distance = f64::from(self.method.pairs);
+        if self.method.topology == Topology::Free && distance > 0.0 {
+            let complex = Complex { triangles: &self.triangles, fans: &self.fans };
+            self.pairs = Some(Pairs::find(&self.positions, complex, distance));
+        }
+    }
+
+    /// Gives every vertex the quadrics of its triangles and borders, and marks the borders.
+    fn sum_up(&mut self, weights: &[f64]) {
+        for (t, &weight) in weights.iter().enumerate() {
+            let corners = self.triangles[t];
+            let [a, b, c] = corners.map(|v| self.place(v));
+            let across = (b - a).cross(c - a);
+            let normal = across.normalize_or_zero();
+            let area = 0.5 * weight * across.length();
+            let plane = Quadric::plane(normal, area);
+            self.facings[t] = Facing::new(normal);
+            for corner in corners {
+                self.quadrics[corner as usize].add(&plane);
+                self.areas[corner as usize] += area as f32;
+            }
+        }
+        let mut uses = vec![0u64; self.positions.len()];
+        for vertex in 0..self.positions.len() as u32 {
+            self.find_borders(vertex, weights, &mut uses);
+        }
+        if let Some(mut layers) = self.layers.take() {
+            let places: Vec<DVec3> = (0..self.positions.len() as u32).map(|v| self.place(v)).collect();
+            layers.sum_up(&self.triangles, &places, weights);
+            self.hold_seams(&layers, weights);
+            self.layers = Some(layers);
+        }
+    }
+
+    /// Marks the vertices of seams, and holds them to the planes that stand upright on the triangles at either side.
+    fn hold_seams(&mut self, layers: &Layers, weights: &[f64]) {
+        for triangle in (0..self.triangles.len()).filter(|_| layers.holds_seams()) {
+            let [a, b, c] = self.triangles[triangle];
+            for edge in [[a, b], [b, c], [c, a]] {
+                if self.is_seam(layers, edge) {
+                    for [vertex, neighbour] in [edge, [edge[1], edge[0]]] {
+                        self.marks[vertex as usize] |= mark::SEAM;
+                        let weight = weights[triangle] * f64::from(self.method.seam);
+                        self.hold_to_edge(vertex, neighbour, triangle, weight);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Marks a vertex that has borders, and holds it to them. `uses` is 0 everywhere, and has room for counts: per
+    /// neighbour of triangles that lead to it, and 2³² times those that come from it.
+    fn find_borders(&mut self, vertex: u32, weights: &[f64], uses: &mut [u64]) {
+        const PLAIN: u64 = 1 << 32 | 1;
+        for &triangle in self.fans.of(vertex) {
+            let [p, q] = others(self.triangles[triangle as usize], vertex);
+            uses[p as usize] += 1;
+            uses[q as usize] += 1 << 32;
+        }
+        for i in 0..self.fans.of(vertex).len() {
+            let triangle = self.fans.of(vertex)[i] as usize;
+            for neighbour in others(self.triangles[triangle], vertex) {
+                let (to, from) = (uses[neighbour as usize] as u32, (uses[neighbour as usize] >> 32) as u32);
+                if uses[neighbour as usize] != PLAIN {
+                    self.marks[vertex as usize] |= if to != from { mark::ODD } else { 0 };
+                    self.marks[vertex as usize] |= if to + from != 2 { mark::BORDER } else { 0 };
+                }
+                if to + from != 2 {
+                    let weight = weights[triangle] * f64::from(self.method.border);
+                    self.hold_to_edge(vertex, neighbour, triangle, weight);
+                }
+            }
+        }
+        for &triangle in self.fans.of(vertex) {
+            for neighbour in others(self.triangles[triangle as usize], vertex) {
+                uses[neighbour as usize] = 0;
+            }
+        }
+    }
+
+    /// Holds one end of an edge of a triangle to the plane through it that stands upright on the triangle.
+    fn hold_to_edge(&mut self, vertex: u32, neighbour: u32, triangle: usize, weight: f64) {
+        let [a, b, c] = self.triangles[triangle].map(|v| self.place(v));
+        let edge = self.place(neighbour) - self.place(vertex);
+        let upright = (b - a).cross(c - a).cross(edge).normalize_or_zero();
+        let plane = Quadric::plane(upright, weight * edge.length_squared());
+        self.quadrics[vertex as usize].add(&plane);
+    }
+}
+
+/// The triangles of a task in an order that keeps neighbours together, those that use a vertex twice left out.
+struct Ordered {
+    /// Per vertex that is used, its old index.
+    origins: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+    /// Per triangle, its old index.
+    old_triangles: Vec<u32>,
+    /// Per triangle, 1 at most.
+    weights: Vec<f64>,
+}
+
+impl Ordered {
+    fn new(task: &Task) -> Self {
+        let old: Vec<[u32; 3]> = (0..task.mesh.triangles.len()).map(|t| task.mesh.corners(t)).collect();
+        let is_triangle = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+        let kept: Vec<u32> = (0..old.len() as u32).filter(|&t| is_triangle(&old[t as usize])).collect();
+        let origins = along_curve(&task.mesh.positions, kept.iter().map(|&t| old[t as usize]));
+        let mut new = vec![0; task.mesh.positions.len()];
+        for (index, &vertex) in (0..).zip(&origins) {
+            new[vertex as usize] = index;
+        }
+        let unsorted: Vec<[u32; 3]> =
+            kept.iter().map(|&t| old[t as usize].map(|v| new[v as usize])).collect();
+        let order = by_lowest_corner(&unsorted, origins.len());
+        let most = task.weights.iter().fold(0.0, |most: f32, &w| most.max(w));
+        let scale = if most > 0.0 { 1.0 / f64::from(most) } else { 1.0 };
+        let old_triangles: Vec<u32> = order.iter().map(|&i| kept[i as usize]).collect();
+        Self {
+            triangles: order.iter().map(|&i| unsorted[i as usize]).collect(),
+            weights: old_triangles.iter().map(|&t| task.weight(t as usize) * scale).collect(),
+            old_triangles,
+            origins,
+        }
+    }
+}
+
+/// The power of two that scales the box around the positions to a longest side between ½ and 1; 1 for a point.
+fn scale_of(positions: &[Vec3]) -> f64 {
+    let bounds = Aabb::around(positions.iter().copied());
+    let extent = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).max_element();
+    if extent > 0.0 { (-extent.log2().ceil()).exp2() } else { 1.0 }
+}

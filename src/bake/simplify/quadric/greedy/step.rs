@@ -1,0 +1,95 @@
+//! What a contraction means: where it goes, and what it costs.
+
+use glam::{DVec3, Vec3};
+
+use super::{Greedy, mark};
+use crate::bake::simplify::quadric::form::{Form, Quadric};
+use crate::bake::simplify::quadric::layer::Move;
+use crate::bake::simplify::quadric::layers::Layers;
+use crate::bake::simplify::quadric::placement::Spot;
+
+/// How much the squared length of an edge adds to its cost, compared with its squared error: enough to order what is
+/// flat but for rounding, too little to matter elsewhere.
+const SHORTER_FIRST: f64 = 1e-9;
+
+/// What contracting two vertices means.
+pub(super) struct Step {
+    pub(super) way: Move,
+    /// Where they go, in object units, and the error of the shape that is seen from there.
+    pub(super) position: Vec3,
+    pub(super) quadric: Quadric,
+    /// Mean squared distance to the planes contracted so far, scaled.
+    pub(super) error: f64,
+}
+
+impl Greedy<'_> {
+    /// What contracting two vertices means.
+    pub(super) fn step(&self, kept: u32, gone: u32) -> Step {
+        let edge = self.place(gone) - self.place(kept);
+        let shape = self.shape(kept, gone, edge);
+        let spot = self.spot(kept, gone, edge, &(shape + self.looks(kept, gone, edge)));
+        let area = f64::from(self.areas[kept as usize] + self.areas[gone as usize]);
+        let position = if spot.place == DVec3::ZERO {
+            self.positions[kept as usize]
+        } else if spot.place == edge {
+            self.positions[gone as usize]
+        } else {
+            ((self.place(kept) + spot.place) / self.scale).as_vec3()
+        };
+        let moved = position.as_dvec3() * self.scale - self.place(kept);
+        let error = if area > 0.0 { shape.at(spot.place).max(0.0) / area } else { 0.0 };
+        let way = Move {
+            kept,
+            gone,
+            edge,
+            to: if position == self.positions[gone as usize] { edge } else { moved },
+        };
+        Step { way, position, quadric: shape.seen_from(moved).pack(), error }
+    }
+
+    /// The error of both ends of an edge, seen from the first.
+    #[inline]
+    fn sum(&self, a: u32, b: u32, edge: DVec3) -> Form {
+        match self.layers {
+            None => self.shape(a, b, edge),
+            Some(_) => self.shape(a, b, edge) + self.looks(a, b, edge),
+        }
+    }
+
+    /// The part of the error that is distance.
+    #[inline]
+    fn shape(&self, a: u32, b: u32, edge: DVec3) -> Form {
+        self.quadrics[a as usize].form() + self.quadrics[b as usize].form().seen_from(-edge)
+    }
+
+    /// The part of the error that is attributes.
+    fn looks(&self, a: u32, b: u32, edge: DVec3) -> Form {
+        let error = |layers: &Layers| layers.error(self.around(), a, b, edge);
+        self.layers.as_ref().map_or(Form::default(), error)
+    }
+
+    /// Where the contraction of two vertices goes, seen from the first.
+    #[inline]
+    fn spot(&self, a: u32, b: u32, edge: DVec3, sum: &Form) -> Spot {
+        let is_locked = |v: u32| self.marks[v as usize] & mark::LOCKED != 0;
+        let area = |v: u32| f64::from(self.areas[v as usize]);
+        let share = || {
+            let share = area(b) / (area(a) + area(b));
+            if share.is_finite() { share } else { 0.5 }
+        };
+        match (is_locked(a), is_locked(b)) {
+            (false, false) => self.method.placement.spot(edge, share, sum),
+            (true, _) => Spot::new(DVec3::ZERO, sum),
+            (_, true) => Spot::new(edge, sum),
+        }
+    }
+
+    /// What contracting two vertices costs, in places to the fourth.
+    #[inline]
+    pub(super) fn cost(&self, a: u32, b: u32) -> f32 {
+        let edge = self.place(b) - self.place(a);
+        let sum = self.sum(a, b, edge);
+        let spread = SHORTER_FIRST * sum.weight() * edge.length_squared();
+        (self.spot(a, b, edge, &sum).error + spread) as f32
+    }
+}
