@@ -11,8 +11,10 @@
 //! | [`simplify`] | fewer triangles: the methods behind one interface |
 //! | [`shapes`] | meshes to try it on |
 //! | [`deviation`] | how far two surfaces are apart, as a bound that is proved |
+//! | [`chain`] | plans, chains of measured levels, and their LOD tables |
 //! | [`mod@write`] | levels as OBJ, as GLB and as pictures |
 
+pub mod chain;
 pub mod deviation;
 pub mod finding;
 pub mod mesh;
