@@ -327,6 +327,9 @@ fn indices_are_wide_from_65536_vertices_on() {
 
 #[test]
 fn what_cannot_be_written_is_named() {
+    let nowhere = Node { name: "n".into(), transform: Transform::Matrix(Mat4::NAN), ..Node::default() };
+    let refused = Glb::default().add_node(nowhere).expect_err("refused");
+    assert_eq!(refused.to_string(), "n: its transform must be finite");
     let refusal = |levels: &[LevelOut]| glb(levels).expect_err("refused").to_string();
     assert_eq!(refusal(&[]), ": it must have a level");
     let mut broken = square(0.0);
@@ -383,12 +386,13 @@ fn scene() -> Vec<u8> {
         rotation: Quat::from_rotation_y(1.0),
         scale: Vec3::splat(2.0),
     };
-    let group = glb.add_node(Node { name: "group".into(), transform: parts, ..Node::default() });
+    let mut add = |node: Node| glb.add_node(node).expect("added");
+    let group = add(Node { name: "group".into(), transform: parts, ..Node::default() });
     let moved = Transform::Matrix(Mat4::from_translation(Vec3::Y));
     let extras = serde_json::Map::from_iter([("tag".to_owned(), serde_json::json!(7))]);
-    glb.add_node(Node { name: "a".into(), parent: Some(group), chain: Some(pair), transform: moved, extras });
-    glb.add_node(Node { name: "a".into(), chain: Some(pair), ..Node::default() });
-    glb.add_node(Node { name: "b".into(), chain: Some(alone), transform: moved, ..Node::default() });
+    add(Node { name: "a".into(), parent: Some(group), chain: Some(pair), transform: moved, extras });
+    add(Node { name: "a".into(), chain: Some(pair), ..Node::default() });
+    add(Node { name: "b".into(), chain: Some(alone), transform: moved, ..Node::default() });
     glb.finish().expect("written")
 }
 
@@ -469,10 +473,10 @@ fn the_checker_of_pages_tells_good_from_bad() {
 
 #[test]
 fn a_sheet_is_a_page_whatever_is_on_it() {
-    let (nothing, mut one, two) = (Mesh::default(), square(0.0), square(f32::NAN));
+    let (nothing, mut one, two, far) = (Mesh::default(), square(0.0), square(f32::NAN), square(f32::MAX));
     one.triangles.truncate(1);
     one.groups[0].triangles = 0..1;
-    let levels = [&one, &nothing, &two, &square(f32::MAX), &one, &one, &one].map(LevelOut::new);
+    let levels = [&one, &nothing, &two, &far, &one, &one, &one].map(LevelOut::new);
     let chains = [
         Chain { name: "<all> & \"none\"\u{0}", levels: &levels },
         Chain { name: "empty", levels: &levels[1..2] },

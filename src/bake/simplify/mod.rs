@@ -28,7 +28,7 @@ mod queue;
 mod rebuild;
 
 pub use error::SimplifyError;
-pub use quadric::{GarlandHeckbert, Placement, Topology};
+pub use quadric::{Attributes, GarlandHeckbert, Placement, Topology};
 
 use std::ops::ControlFlow;
 

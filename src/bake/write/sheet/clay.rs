@@ -5,22 +5,22 @@ use glam::{DVec3, Vec3};
 use super::camera::Camera;
 use super::normals::Normals;
 use super::raster::{Facet, Frame, NOTHING};
-use crate::bake::mesh::Mesh;
+use super::sky::Sky;
 
 /// What the page is made of.
 const PAPER: Vec3 = Vec3::ONE;
 
 /// Linear light that fronts, backs and edges give back.
-const FRONT: Vec3 = Vec3::new(0.62, 0.60, 0.57);
+const FRONT: Vec3 = Vec3::new(0.66, 0.64, 0.61);
 const BACK: Vec3 = Vec3::new(0.36, 0.44, 0.62);
 const INK: Vec3 = Vec3::new(0.03, 0.06, 0.12);
 
 /// Lights as the viewer sees them: direction (to be normalised) and strength. The first comes over the left shoulder.
-const LIGHTS: [(Vec3, f32); 2] = [(Vec3::new(-0.5, 0.75, 0.7), 0.85), (Vec3::new(0.9, 0.1, 0.45), 0.18)];
+const LIGHTS: [(Vec3, f32); 2] = [(Vec3::new(-0.5, 0.75, 0.7), 0.78), (Vec3::new(0.9, 0.1, 0.45), 0.26)];
 
 /// Light from all around: from below, and what comes on top of it from above.
-const GROUND: f32 = 0.16;
-const SKY: f32 = 0.24;
+const GROUND: f32 = 0.22;
+const SKY: f32 = 0.3;
 
 /// Edges are drawn so wide, in pixels, and so strongly.
 const EDGE_PX: f64 = 0.9;
@@ -31,13 +31,14 @@ const EDGE_STRENGTH: f32 = 0.5;
 const EDGES_FROM_PX: [f64; 2] = [3.0, 10.0];
 
 /// The linear colour of each sample; a pixel has `samples` of them each way.
-pub(super) fn colours(mesh: &Mesh, camera: &Camera, frame: &Frame, samples: f32) -> Vec<Vec3> {
-    let normals = Normals::of(mesh);
+pub(super) fn colours(normals: &Normals<'_>, camera: &Camera, frame: &Frame, samples: usize) -> Vec<Vec3> {
+    let sky = Sky::of(frame.side);
+    let lights = LIGHTS.map(|(from, power)| from.normalize() * power);
     let colour = |sample: usize| match frame.triangle[sample] {
         NOTHING => PAPER,
         triangle => {
-            let seen = Seen::of(mesh, camera, frame, &normals, (triangle as usize, sample));
-            seen.colour(open_sky(frame, sample), f64::from(samples))
+            let seen = Seen::of(normals, camera, frame, (triangle as usize, sample));
+            seen.lit(&lights, sky.open(frame, sample)).lerp(INK, seen.edge(samples as f64))
         }
     };
     (0..frame.triangle.len()).map(colour).collect()
@@ -55,13 +56,8 @@ struct Seen {
 }
 
 impl Seen {
-    fn of(
-        mesh: &Mesh,
-        camera: &Camera,
-        frame: &Frame,
-        normals: &Normals<'_>,
-        (triangle, sample): (usize, usize),
-    ) -> Self {
+    fn of(normals: &Normals<'_>, camera: &Camera, frame: &Frame, (triangle, sample): (usize, usize)) -> Self {
+        let mesh = normals.mesh;
         let places = mesh.corners(triangle).map(|p| camera.place(mesh.positions[p as usize]));
         let facet = Facet::of(places);
         let (x, y) = (sample % frame.side, sample / frame.side);
@@ -78,13 +74,12 @@ impl Seen {
         }
     }
 
-    fn colour(&self, open: f32, samples: f64) -> Vec3 {
-        let direct: f32 =
-            LIGHTS.iter().map(|(from, power)| power * self.normal.dot(from.normalize()).max(0.0)).sum();
+    /// Without edges. `lights` are directions as long as they are strong.
+    fn lit(&self, lights: &[Vec3], open: f32) -> Vec3 {
+        let direct: f32 = lights.iter().map(|&light| self.normal.dot(light).max(0.0)).sum();
         let around = GROUND + SKY * (0.5 + 0.5 * self.normal.y);
         let clay = if self.is_front { FRONT } else { BACK };
-        let lit = clay * (around * open + direct * (0.5 + 0.5 * open));
-        lit.lerp(INK, self.edge(samples))
+        clay * (around * open + direct * (0.5 + 0.5 * open))
     }
 
     /// How much of an edge there is.
@@ -95,31 +90,3 @@ impl Seen {
         (large * near) as f32 * EDGE_STRENGTH
     }
 }
-
-/// How far neighbours are looked for, as shares of the frame.
-const REACHES: [f32; 3] = [0.012, 0.03, 0.07];
-
-/// The share of the sky that nothing nearby hides, from 0 to 1: what rises around a sample, in the depth buffer alone
-/// (Mittring, *Finding next gen: CryEngine 2*, 2007). What rises by more than three times its distance is something in
-/// front and hides nothing. Neighbouring samples look in different directions, which their pixel evens out.
-fn open_sky(frame: &Frame, sample: usize) -> f32 {
-    let (x, y) = ((sample % frame.side) as f32, (sample / frame.side) as f32);
-    let turn = (sample % 2 * 2 + sample / frame.side % 2) as f32 / 4.0;
-    let mut hidden = 0.0;
-    for reach in REACHES.map(|share| share * frame.side as f32) {
-        for direction in 0..DIRECTIONS {
-            let angle = (direction as f32 + turn) * (std::f32::consts::TAU / DIRECTIONS as f32);
-            let at = [x + reach * angle.cos(), y + reach * angle.sin()];
-            if at.iter().all(|&at| at >= 0.0 && at < frame.side as f32) {
-                let depth = frame.depth[at[1] as usize * frame.side + at[0] as usize];
-                let rise = (depth - frame.depth[sample]) / reach;
-                hidden += if rise < 3.0 { (rise - 0.15).clamp(0.0, 1.0) } else { 0.0 };
-            }
-        }
-    }
-    let share = hidden / (REACHES.len() * DIRECTIONS) as f32;
-    (1.0 - 1.6 * share).max(0.0)
-}
-
-/// In which neighbours are looked for.
-const DIRECTIONS: usize = 6;

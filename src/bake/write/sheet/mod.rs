@@ -15,11 +15,13 @@ mod image;
 mod normals;
 mod page;
 mod raster;
+mod sky;
 
 use std::io;
 
 use self::camera::Camera;
 use self::image::Image;
+use self::normals::Normals;
 use self::page::{Page, Tile};
 use self::raster::Frame;
 use super::LevelOut;
@@ -68,7 +70,7 @@ pub fn svg(chains: &[Chain<'_>]) -> io::Result<String> {
 /// As [`svg`].
 pub fn png(mesh: &Mesh, side_px: usize) -> io::Result<Vec<u8>> {
     let camera = Camera::around(mesh, side_px.clamp(1, 4096) * SAMPLES);
-    picture(mesh, &camera, &Frame::of(mesh, &camera)).png()
+    picture(&Normals::of(mesh), &camera).png()
 }
 
 /// All levels as the finest one's camera sees them.
@@ -88,7 +90,8 @@ fn tiles(levels: &[LevelOut<'_>]) -> io::Result<Vec<Tile>> {
 
 /// A mesh, and again what lies to the right of and below a corner, nearer.
 fn tile(mesh: &Mesh, camera: &Camera, corner: Option<[usize; 2]>) -> io::Result<Tile> {
-    let look = |camera: &Camera| picture(mesh, camera, &Frame::of(mesh, camera)).png();
+    let normals = Normals::of(mesh);
+    let look = |camera: &Camera| picture(&normals, camera).png();
     let share = |at: usize| at as f64 / (TILE_PX * SAMPLES) as f64;
     Ok(Tile {
         whole: look(camera)?,
@@ -97,8 +100,9 @@ fn tile(mesh: &Mesh, camera: &Camera, corner: Option<[usize; 2]>) -> io::Result<
     })
 }
 
-fn picture(mesh: &Mesh, camera: &Camera, frame: &Frame) -> Image {
-    let colours = clay::colours(mesh, camera, frame, SAMPLES as f32);
+fn picture(normals: &Normals<'_>, camera: &Camera) -> Image {
+    let frame = Frame::of(normals.mesh, camera);
+    let colours = clay::colours(normals, camera, &frame, SAMPLES);
     Image::of_samples(&colours, frame.side, SAMPLES)
 }
 

@@ -6,7 +6,7 @@ use crate::bake::mesh::Mesh;
 
 /// Normals of a mesh, its own or made from its triangles.
 pub(super) struct Normals<'a> {
-    mesh: &'a Mesh,
+    pub(super) mesh: &'a Mesh,
     /// Per position, the sum over its triangles, by area.
     smooth: Vec<DVec3>,
 }
