@@ -9,6 +9,7 @@
 //! | [`repair`] | what is wrong with a mesh, and what can be put right safely |
 //! | [`finding`] | what readers and repair have to report |
 //! | [`simplify`] | fewer triangles: the methods behind one interface |
+//! | [`mod@split`] | a mesh that is in view near and far at once, in chunks without cracks |
 //! | [`shapes`] | meshes to try it on |
 //! | [`deviation`] | how far two surfaces are apart, as a bound that is proved |
 
@@ -19,6 +20,7 @@ pub mod read;
 pub mod repair;
 pub mod shapes;
 pub mod simplify;
+pub mod split;
 pub mod surface;
 pub mod weld;
 
