@@ -12,6 +12,7 @@
 //! | [`mod@split`] | a mesh that is in view near and far at once, in chunks without cracks |
 //! | [`shapes`] | meshes to try it on |
 //! | [`deviation`] | how far two surfaces are apart, as a bound that is proved |
+//! | [`mod@write`] | levels as OBJ, as GLB and as pictures |
 
 pub mod deviation;
 pub mod finding;
@@ -23,6 +24,7 @@ pub mod simplify;
 pub mod split;
 pub mod surface;
 pub mod weld;
+pub mod write;
 
 pub use finding::{Defect, Finding};
 pub use mesh::{Group, Mesh, Skin};
