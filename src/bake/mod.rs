@@ -12,6 +12,7 @@
 //! | [`mod@split`] | a mesh that is in view near and far at once, in chunks without cracks |
 //! | [`shapes`] | meshes to try it on |
 //! | [`deviation`] | how far two surfaces are apart, as a bound that is proved |
+//! | [`scene`] | whole glTF scenes: which meshes get levels, and the same scene with them |
 //! | [`mod@write`] | levels as OBJ, as GLB and as pictures |
 
 pub mod deviation;
@@ -19,6 +20,7 @@ pub mod finding;
 pub mod mesh;
 pub mod read;
 pub mod repair;
+pub mod scene;
 pub mod shapes;
 pub mod simplify;
 pub mod split;

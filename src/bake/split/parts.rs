@@ -77,13 +77,13 @@ mod tests {
     #[test]
     fn what_is_small_stays_whole() {
         let mut mesh: Mesh = terrain(20, 1).into();
-        let far = mesh.positions.len() as u32;
-        mesh.positions.extend([Vec3::X * 100.0, Vec3::X * 101.0, Vec3::ONE * 100.0]);
-        mesh.wedges.extend(far..far + 3);
-        mesh.triangles.push([far, far + 1, far + 2]);
-        mesh.groups[0].triangles.end += 1;
-        let parts = parts(&mesh, &Options { triangles: 10, share: 0.5 });
-        assert_eq!(parts.len(), 2, "{parts:?}");
+        let (here, count) = (mesh.clone(), mesh.positions.len() as u32);
+        mesh.positions.extend(here.positions.iter().map(|p| p + Vec3::X * 100.0));
+        mesh.wedges.extend(count..2 * count);
+        mesh.triangles.extend(here.triangles.iter().map(|t| t.map(|w| w + count)));
+        mesh.groups[0].triangles.end *= 2;
+        let parts = |share| parts(&mesh, &Options { triangles: 10, share });
+        assert_eq!((parts(0.02).len(), parts(0.0).len()), (2, 160));
     }
 
     #[test]
