@@ -12,9 +12,11 @@
 //! | [`mod@split`] | a mesh that is in view near and far at once, in chunks without cracks |
 //! | [`shapes`] | meshes to try it on |
 //! | [`deviation`] | how far two surfaces are apart, as a bound that is proved |
+//! | [`chain`] | plans, chains of measured levels, and their LOD tables |
 //! | [`scene`] | whole glTF scenes: which meshes get levels, and the same scene with them |
 //! | [`mod@write`] | levels as OBJ, as GLB and as pictures |
 
+pub mod chain;
 pub mod deviation;
 pub mod finding;
 pub mod mesh;

@@ -27,8 +27,9 @@
 //! The whole mesh stays in the file, though no node shows it any more.
 //!
 //! ```no_run
-//! use lod_budget::bake::chain::{Accuracy, Plan, quietly};
+//! use lod_budget::bake::chain::{Plan, quietly};
 //! use lod_budget::bake::scene::{Options, Scene};
+//! use lod_budget::bake::write::LevelOut;
 //!
 //! let bytes = std::fs::read("town.glb")?;
 //! let scene = Scene::open(&bytes, "town.glb", None, &Options::default())?;
@@ -36,6 +37,9 @@
 //! for part in scene.parts() {
 //!     chains.push(Plan::default().bake_locked(&part.chunk.mesh, &part.chunk.locked, &mut quietly)?);
 //! }
+//! let levels: Vec<Vec<LevelOut>> =
+//!     chains.iter().map(|chain| chain.levels.iter().map(|level| LevelOut::new(&level.mesh)).collect()).collect();
+//! std::fs::write("town_lods.glb", scene.write(&levels)?)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

@@ -1,0 +1,174 @@
+//! What a bake comes to: the object that `--json` prints, and that the table is made from.
+
+use lod_budget::bake::chain::{Chain, ChainLevel, LeftOut, Reason};
+use lod_budget::{LevelRecord, LodTable};
+use serde::{Deserialize, Serialize};
+
+use super::inputs::{Found, Input};
+use super::outputs::Folder;
+
+/// A bake in numbers. Its keys are an interface: they are added to, never renamed.
+#[derive(Serialize)]
+pub struct Summary {
+    pub meshes: Vec<MeshRow>,
+    /// What could not be baked, and why.
+    pub failed: Vec<Failure>,
+}
+
+#[derive(Serialize)]
+pub struct Failure {
+    pub input: String,
+    /// Names the input.
+    pub error: String,
+}
+
+/// What was made of one file. Distances are in object units, times are of a wall clock.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct MeshRow {
+    pub input: String,
+    /// What its outputs are called.
+    pub name: String,
+    pub status: Status,
+    pub method: String,
+    pub preset: Option<String>,
+    /// Simplification alone.
+    pub seconds: f64,
+    pub measure_seconds: f64,
+    /// Of the box around level 0.
+    pub diagonal: f64,
+    /// Positions that no triangle used; no level has them.
+    pub unreferenced: usize,
+    /// What was odd about the file.
+    pub findings: Vec<String>,
+    pub levels: Vec<LevelRow>,
+    /// Levels that were asked for and would be of no use.
+    pub left_out: Vec<LeftOutRow>,
+    /// All levels in one file.
+    pub scene_file: Option<String>,
+    /// The LOD table.
+    pub table_file: Option<String>,
+    /// The levels side by side.
+    pub sheet_file: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// Just now.
+    Baked,
+    /// Before, from the same bytes in the same way.
+    Kept,
+}
+
+#[derive(Clone, Serialize, Deserialize)]
+pub struct LevelRow {
+    pub level: usize,
+    pub triangles: usize,
+    pub vertices: usize,
+    pub draws: usize,
+    pub bytes: u64,
+    /// A proved bound.
+    pub hausdorff: f64,
+    /// Some point is at least so far away: the true distance is between this and `hausdorff`.
+    pub attained: f64,
+    pub rms: f64,
+    /// The greatest bound of this and all finer levels.
+    pub error: f64,
+    pub accuracy: f32,
+    pub min_size: Option<f32>,
+    /// This level alone.
+    pub file: Option<String>,
+}
+
+#[derive(Clone, Serialize, Deserialize)]
+pub struct LeftOutRow {
+    /// What was asked for: triangles, or an error in object units.
+    pub target_triangles: Option<usize>,
+    pub target_error: Option<f32>,
+    /// The triangles that it came to.
+    pub triangles: usize,
+    pub reason: String,
+}
+
+impl Summary {
+    pub fn of(found: &Found, results: Vec<anyhow::Result<MeshRow>>) -> Self {
+        let nothing = found.nothing.iter().map(|(path, rule)| {
+            let input = path.display().to_string();
+            Failure { error: format!("{input}: {rule}"), input }
+        });
+        let mut summary = Self { meshes: Vec::new(), failed: nothing.collect() };
+        for (input, result) in found.inputs.iter().zip(results) {
+            match result {
+                Ok(row) => summary.meshes.push(row),
+                Err(error) => {
+                    let input = input.file.display().to_string();
+                    summary.failed.push(Failure { input, error: format!("{error:#}") });
+                }
+            }
+        }
+        summary
+    }
+}
+
+impl MeshRow {
+    pub fn kept(self) -> Self {
+        Self { status: Status::Kept, ..self }
+    }
+
+    /// The same files by the name that they go by now.
+    pub fn of_input(self, input: &Input) -> Self {
+        Self { input: input.file.display().to_string(), ..self }
+    }
+
+    /// Files as they are to be called from the current folder.
+    pub fn within(mut self, folder: &Folder) -> Self {
+        let levels = self.levels.iter_mut().map(|level| &mut level.file);
+        let files = levels.chain([&mut self.scene_file, &mut self.table_file, &mut self.sheet_file]);
+        for file in files.flatten() {
+            *file = folder.file(file).display().to_string();
+        }
+        self
+    }
+}
+
+impl LevelRow {
+    pub fn all(chain: &Chain, table: &LodTable) -> Vec<Self> {
+        let levels = chain.levels.iter().zip(table.levels()).enumerate();
+        levels.map(|(i, (level, record))| Self::of(i, level, record)).collect()
+    }
+
+    fn of(i: usize, level: &ChainLevel, record: &LevelRecord) -> Self {
+        Self {
+            level: i,
+            triangles: level.triangles(),
+            vertices: level.vertices(),
+            draws: level.draws(),
+            bytes: level.bytes(),
+            hausdorff: level.deviation.hausdorff,
+            attained: level.deviation.attained,
+            rms: level.deviation.rms(),
+            // All its digits, so that nobody reads a number below it.
+            error: f64::from(level.error),
+            accuracy: record.accuracy,
+            min_size: record.min_size,
+            file: None,
+        }
+    }
+}
+
+impl LeftOutRow {
+    pub fn of(left_out: &LeftOut) -> Self {
+        let target = left_out.target;
+        let reason = match left_out.reason {
+            Reason::NotCoarser => "hardly coarser than the level before",
+            Reason::TooFar => "too far from level 0",
+            Reason::Empty => "nothing is left of it",
+        };
+        Self {
+            target_triangles: (target.triangles > 0).then_some(target.triangles),
+            target_error: target.error.is_finite().then_some(target.error),
+            triangles: left_out.triangles,
+            reason: reason.to_owned(),
+        }
+    }
+}
