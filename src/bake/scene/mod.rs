@@ -35,7 +35,7 @@
 //! let scene = Scene::open(&bytes, "town.glb", None, &Options::default())?;
 //! let mut chains = Vec::new();
 //! for part in scene.parts() {
-//!     chains.push(Plan::default().bake_locked(&part.chunk.mesh, &part.chunk.locked, &mut quietly)?);
+//!     chains.push(part.bake(&Plan::default(), &mut quietly)?);
 //! }
 //! let levels: Vec<Vec<LevelOut>> =
 //!     chains.iter().map(|chain| chain.levels.iter().map(|level| LevelOut::new(&level.mesh)).collect()).collect();
@@ -51,14 +51,17 @@ mod names;
 mod nodes;
 mod survey;
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use glam::DMat4;
 
 use self::document::Document;
+use super::chain::{BakeError, Chain, LeftOut, Plan, Progress, Reason};
 use super::finding::Finding;
 use super::read::MeshError;
 use super::read::gltf::Source;
+use super::simplify::Target;
 use super::split::{self, Chunk};
 use super::write::LevelOut;
 
@@ -101,6 +104,27 @@ pub struct Part {
     pub instances: usize,
     /// Whether it is one of several.
     pub is_chunk: bool,
+}
+
+impl Part {
+    /// Makes its levels as [`Plan::bake`] does, those that fit its neighbours.
+    ///
+    /// # Errors
+    /// As [`Plan::bake`].
+    pub fn bake(
+        &self,
+        plan: &Plan,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Chain, BakeError> {
+        let mut chain = plan.bake_locked(&self.chunk.mesh, &self.chunk.locked, progress)?;
+        let fitting = chain.levels.iter().take_while(|level| self.chunk.check(&level.mesh).is_ok()).count();
+        let misfits = chain.levels.drain(fitting..).map(|level| {
+            let triangles = level.triangles();
+            LeftOut { target: Target::triangles(triangles), triangles, reason: Reason::Misfit }
+        });
+        chain.left_out.extend(misfits);
+        Ok(chain)
+    }
 }
 
 /// Something that is shown and gets no levels.

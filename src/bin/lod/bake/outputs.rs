@@ -124,7 +124,7 @@ impl Outputs {
         Ok(stamps)
     }
 
-    fn levels(&self) -> Vec<LevelOut<'_>> {
+    pub fn levels(&self) -> Vec<LevelOut<'_>> {
         self.chain
             .levels
             .iter()
