@@ -63,4 +63,6 @@ pub enum Reason {
     TooFar,
     /// Nothing is left of it.
     Empty,
+    /// It, or a level before it, does not fit the other chunks of its mesh.
+    Misfit,
 }

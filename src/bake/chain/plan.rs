@@ -72,11 +72,26 @@ impl Plan {
         mesh: &Mesh,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Chain, BakeError> {
+        self.bake_locked(mesh, &[], progress)
+    }
+
+    /// As [`Plan::bake`], with positions that must stay where they are in all levels, bit by bit: as many as the mesh
+    /// has, or none.
+    ///
+    /// # Errors
+    /// As [`Plan::bake`]; a list of another length.
+    pub fn bake_locked(
+        &self,
+        mesh: &Mesh,
+        locked: &[bool],
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Chain, BakeError> {
         self.check()?;
         let (finest, unreferenced) = finest(mesh)?;
+        let locked = locked_of(mesh, locked)?;
         let diagonal = diagonal(&finest)?;
         let gauge = Gauge::new(&finest, &self.measure)?;
-        let mut draft = Draft::new(self, diagonal, finest);
+        let mut draft = Draft::new(self, diagonal, finest, locked);
         match self.stops.counts(draft.finest().triangles.len(), &self.limits) {
             Some(counts) => draft.add_counts(&counts, &gauge, progress)?,
             None => draft.add_errors(&gauge, progress)?,
@@ -93,20 +108,20 @@ impl Plan {
         self.limits.check()
     }
 
-    /// The levels of these targets, each from the mesh itself.
+    /// The levels of these targets, each from the task's mesh itself.
     pub(super) fn simplify(
         &self,
-        mesh: &Mesh,
+        task: &Task<'_>,
         targets: &[Target],
         progress: &mut Tell<'_>,
     ) -> Result<Vec<Simplified>, BakeError> {
         let Some(&first) = targets.first() else { return Ok(Vec::new()) };
         let mut tell = |at| progress(Progress::Simplifying(at));
-        let from = mesh.triangles.len();
+        let from = task.mesh.triangles.len();
         if tell(simplify::Progress { from, triangles: from, target: first.triangles }).is_break() {
             return Err(BakeError::Cancelled);
         }
-        let levels = self.method.chain(&Task::new(mesh, first), targets, &mut tell)?;
+        let levels = self.method.chain(&Task { target: first, ..*task }, targets, &mut tell)?;
         match levels.iter().any(|level| level.stopped == Stopped::Cancelled) {
             true => Err(BakeError::Cancelled),
             false => Ok(levels),
@@ -134,6 +149,22 @@ fn finest(mesh: &Mesh) -> Result<(Mesh, usize), BakeError> {
     Ok((finest, unreferenced))
 }
 
+/// The locks of those positions that a triangle uses.
+fn locked_of(mesh: &Mesh, locked: &[bool]) -> Result<Vec<bool>, BakeError> {
+    if locked.is_empty() {
+        return Ok(Vec::new());
+    }
+    if locked.len() != mesh.positions.len() {
+        let (given, vertices) = (locked.len(), mesh.positions.len());
+        return Err(simplify::SimplifyError::Locked { given, vertices }.into());
+    }
+    let mut used = vec![false; mesh.positions.len()];
+    for &wedge in mesh.triangles.as_flattened() {
+        used[mesh.wedges[wedge as usize] as usize] = true;
+    }
+    Ok(locked.iter().zip(used).filter(|&(_, used)| used).map(|(&locked, _)| locked).collect())
+}
+
 /// Of the bounding box.
 fn diagonal(mesh: &Mesh) -> Result<f64, BakeError> {
     let bounds = mesh.bounds();
@@ -149,18 +180,25 @@ fn diagonal(mesh: &Mesh) -> Result<f64, BakeError> {
 struct Draft<'a> {
     plan: &'a Plan,
     diagonal: f64,
+    /// Per position of level 0, or empty.
+    locked: Vec<bool>,
     levels: Vec<ChainLevel>,
     left_out: Vec<LeftOut>,
 }
 
 impl<'a> Draft<'a> {
-    fn new(plan: &'a Plan, diagonal: f64, finest: Mesh) -> Self {
+    fn new(plan: &'a Plan, diagonal: f64, finest: Mesh, locked: Vec<bool>) -> Self {
         let finest = ChainLevel { mesh: finest, deviation: Deviation::default(), error: 0.0 };
-        Self { plan, diagonal, levels: vec![finest], left_out: Vec::new() }
+        Self { plan, diagonal, locked, levels: vec![finest], left_out: Vec::new() }
     }
 
     fn finest(&self) -> &Mesh {
         &self.levels[0].mesh
+    }
+
+    /// What to simplify, whatever the target.
+    fn task(&self) -> Task<'_> {
+        Task { locked: &self.locked, ..Task::new(self.finest(), Target::triangles(0)) }
     }
 
     /// One pass of the method, then a measurement per level, until one is too far.
@@ -171,7 +209,7 @@ impl<'a> Draft<'a> {
         progress: &mut Tell<'_>,
     ) -> Result<(), BakeError> {
         let targets: Vec<Target> = counts.iter().copied().map(Target::triangles).collect();
-        let levels = self.plan.simplify(self.finest(), &targets, progress)?;
+        let levels = self.plan.simplify(&self.task(), &targets, progress)?;
         for (i, (&target, level)) in targets.iter().zip(levels).enumerate() {
             tell_measuring(i, targets.len(), progress)?;
             self.add(target, level.mesh, |mesh| gauge.measured(mesh))?;
@@ -184,7 +222,7 @@ impl<'a> Draft<'a> {
         let Stops::Errors(lengths) = &self.plan.stops else { return Ok(()) };
         let mut limits: Vec<f64> = lengths.iter().map(|length| length.units(self.diagonal)).collect();
         limits.sort_unstable_by(f64::total_cmp);
-        for Found { limit, level } in search::search(self.plan, self.finest(), &limits, gauge, progress)? {
+        for Found { limit, level } in search::search(self.plan, &self.task(), &limits, gauge, progress)? {
             let target = Target::error(limit as f32);
             match level {
                 Some(level) => self.add(target, level.mesh, |mesh| Ok(ChainLevel { mesh, ..level }))?,

@@ -8,7 +8,7 @@ use super::measure::Gauge;
 use super::plan::{Plan, Tell, tell_measuring};
 use super::{BakeError, ChainLevel};
 use crate::bake::mesh::Mesh;
-use crate::bake::simplify::Target;
+use crate::bake::simplify::{Target, Task};
 
 /// How often the method is asked. Each time halves, about, what a search leaves open, at the price of a whole chain.
 const ROUNDS: usize = 8;
@@ -29,17 +29,17 @@ pub(super) struct Found {
 /// For each of these distances, which rise, the coarsest level that was found within it.
 pub(super) fn search(
     plan: &Plan,
-    finest: &Mesh,
+    task: &Task<'_>,
     limits: &[f64],
     gauge: &Gauge<'_>,
     progress: &mut Tell<'_>,
 ) -> Result<Vec<Found>, BakeError> {
-    let mut quests: Vec<Quest> = limits.iter().map(|&limit| Quest::new(limit, finest)).collect();
+    let mut quests: Vec<Quest> = limits.iter().map(|&limit| Quest::new(limit, task.mesh)).collect();
     for _ in 0..ROUNDS {
         let mut open: Vec<&mut Quest> = quests.iter_mut().filter(|quest| !quest.is_done()).collect();
         open.sort_by(|a, b| a.knob.total_cmp(&b.knob));
         let targets: Vec<Target> = open.iter().map(|quest| Target::error(quest.knob as f32)).collect();
-        let levels = plan.simplify(finest, &targets, progress)?;
+        let levels = plan.simplify(task, &targets, progress)?;
         for (i, (quest, level)) in open.iter_mut().zip(levels).enumerate() {
             tell_measuring(i, targets.len(), progress)?;
             quest.learn(level.mesh, gauge)?;

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow};
-use lod_budget::bake::chain::{Chain, Progress};
+use lod_budget::bake::chain::{BakeError, Chain, Progress};
 use lod_budget::bake::read;
 
 use super::inputs::{Found, Input};
@@ -44,17 +44,33 @@ fn baked(input: &Input, settings: &Settings, tell: &mut Tell<'_>) -> anyhow::Res
     let of_input = || input.file.display().to_string();
     let mut file = read::load(&input.file).map_err(|e| anyhow!("{e}"))?;
     file.mesh.name.clone_from(&input.name);
+    let findings = file.findings.iter().map(ToString::to_string).collect();
+    let bake = |progress: &mut Asked<'_>| settings.plan.bake(&file.mesh, progress);
+    let baked = timed(&input.name, bake, settings, tell).with_context(of_input)?;
+    Ok((MeshRow { input: of_input(), findings, ..baked.0 }, baked.1))
+}
+
+/// How a bake asks whether to go on.
+pub type Asked<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
+
+/// Has something baked, and tells all there is to tell but where it is from.
+pub fn timed(
+    name: &str,
+    bake: impl FnOnce(&mut Asked<'_>) -> Result<Chain, BakeError>,
+    settings: &Settings,
+    tell: &mut Tell<'_>,
+) -> anyhow::Result<(MeshRow, Outputs)> {
     let mut clock = Clock::new();
     let mut progress = |at| {
         tell(clock.tick(at));
         ControlFlow::Continue(())
     };
-    let chain = settings.plan.bake(&file.mesh, &mut progress).with_context(of_input)?;
+    let chain = bake(&mut progress)?;
     clock.stop();
-    let table = chain.table(settings.accuracy).with_context(of_input)?;
+    let table = chain.table(settings.accuracy)?;
     let row = MeshRow {
-        input: of_input(),
-        name: input.name.clone(),
+        input: String::new(),
+        name: name.to_owned(),
         status: Status::Baked,
         method: settings.method.to_owned(),
         preset: settings.preset.map(str::to_owned),
@@ -62,7 +78,7 @@ fn baked(input: &Input, settings: &Settings, tell: &mut Tell<'_>) -> anyhow::Res
         measure_seconds: clock.measuring.as_secs_f64(),
         diagonal: diagonal(&chain),
         unreferenced: chain.unreferenced,
-        findings: file.findings.iter().map(ToString::to_string).collect(),
+        findings: Vec::new(),
         levels: LevelRow::all(&chain, &table),
         left_out: chain.left_out.iter().map(LeftOutRow::of).collect(),
         scene_file: None,

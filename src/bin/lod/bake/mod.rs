@@ -4,6 +4,7 @@ mod inputs;
 mod mesh;
 mod outputs;
 mod record;
+mod scene;
 mod settings;
 mod summary;
 mod words;
@@ -18,13 +19,17 @@ use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lod_budget::bake::chain::{Accuracy, Length, Preset};
 
+use inputs::{Found, Input};
+use scene::SceneArgs;
 use settings::Settings;
-use summary::Summary;
+use summary::{Baked, Summary};
+use work::Tell;
 
 /// Make levels of meshes, measure how far each is from the original, and write them with their LOD tables.
 ///
-/// Reads .obj, .ply, .off, .stl, .gltf and .glb files; all of a file is one mesh. Writes a folder per mesh. What was
-/// baked before from the same bytes in the same way is kept.
+/// Reads .obj, .ply, .off, .stl, .gltf and .glb files; all of a file is one mesh, unless it is glTF that shows several:
+/// of such a scene every mesh gets levels. Writes a folder per file. What was baked before from the same bytes in the
+/// same way is kept; scenes are baked anew.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
@@ -33,6 +38,8 @@ pub struct Args {
     meshes: Vec<PathBuf>,
     #[command(flatten)]
     chain: ChainArgs,
+    #[command(flatten)]
+    scene: SceneArgs,
     /// Folder to write to; made where there is none
     #[arg(long, value_name = "DIR", default_value = "baked")]
     out: PathBuf,
@@ -88,6 +95,7 @@ Examples:
   lod bake rock.obj
   lod bake 'props/*.glb' --preset small-prop --out lods --jobs 4
   lod bake statue.ply --errors 0.1%,0.5%,2% --format glb
+  lod bake town.glb                      every mesh of a scene, in baked/town/town.glb
   lod bake statue.ply --ratios 0.5,0.25,0.12 --json > statue.json
 
 Writes to DIR/NAME, NAME being that of the file:
@@ -143,7 +151,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> anyhow::Result<Vec<String>> {
     let jobs = args.jobs.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZero::get);
     let bar = work::progress_bar(args.json)?;
     let results =
-        work::all(&found.inputs, jobs, &bar, |input, tell| mesh::bake(input, &found, &settings, tell));
+        work::all(&found.inputs, jobs, &bar, |input, tell| bake(input, &found, args, &settings, jobs, tell));
     bar.finish_and_clear();
     let summary = Summary::of(&found, results);
     if args.json {
@@ -167,4 +175,22 @@ fn length(text: &str) -> Result<Length, String> {
         None => number(text).map(Length::Units),
     };
     length.ok_or_else(|| "must be a positive number, with % for percent of the diagonal".to_owned())
+}
+
+/// One file, as what it is. A scene's parts share the jobs where there is nothing beside it.
+fn bake(
+    input: &Input,
+    found: &Found,
+    args: &Args,
+    settings: &Settings,
+    jobs: usize,
+    tell: &mut Tell<'_>,
+) -> anyhow::Result<Baked> {
+    if args.scene.means(&input.file) {
+        let jobs = if found.inputs.len() == 1 { jobs } else { 1 };
+        let (scene, parts) = scene::bake(input, found, settings, jobs, tell)?;
+        return Ok(Baked::Scene(scene, parts));
+    }
+    let row = mesh::bake(input, found, settings, tell)?;
+    Ok(Baked::Mesh(Box::new(row)))
 }

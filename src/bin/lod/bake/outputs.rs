@@ -124,7 +124,7 @@ impl Outputs {
         Ok(stamps)
     }
 
-    fn levels(&self) -> Vec<LevelOut<'_>> {
+    pub fn levels(&self) -> Vec<LevelOut<'_>> {
         self.chain
             .levels
             .iter()
@@ -146,5 +146,6 @@ fn level_out<'a>(level: &'a ChainLevel, record: &LevelRecord) -> LevelOut<'a> {
         mesh: &level.mesh,
         measured: Some(Measured { error: level.error, hausdorff, rms }),
         coverage: record.min_size.map(coverage_of_size),
+        accuracy: Some(record.accuracy),
     }
 }

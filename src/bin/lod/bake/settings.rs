@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use lod_budget::bake::chain::{Accuracy, Limits, Plan, Preset, Stops};
+use lod_budget::bake::scene;
 
 use super::{Args, ChainArgs, Format, MethodKind};
 
@@ -11,6 +12,8 @@ pub struct Settings {
     pub plan: Plan,
     pub accuracy: Accuracy,
     pub formats: Vec<Format>,
+    /// What is done to scenes.
+    pub scene: scene::Options,
     pub out: PathBuf,
     pub force: bool,
     /// As `--method` has it.
@@ -28,6 +31,7 @@ impl Settings {
             plan,
             accuracy: args.chain.accuracy.accuracy(),
             formats: args.format.clone(),
+            scene: args.scene.options(),
             out: args.out.clone(),
             force: args.force,
             method: args.chain.method.name(),

@@ -1,6 +1,7 @@
 //! What a bake comes to: the object that `--json` prints, and that the table is made from.
 
 use lod_budget::bake::chain::{Chain, ChainLevel, LeftOut, Reason};
+use lod_budget::bake::scene::Left;
 use lod_budget::{LevelRecord, LodTable};
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +11,9 @@ use super::outputs::Folder;
 /// A bake in numbers. Its keys are an interface: they are added to, never renamed.
 #[derive(Serialize)]
 pub struct Summary {
+    /// Of scenes, each part by itself.
     pub meshes: Vec<MeshRow>,
+    pub scenes: Vec<SceneRow>,
     /// What could not be baked, and why.
     pub failed: Vec<Failure>,
 }
@@ -49,6 +52,42 @@ pub struct MeshRow {
     pub table_file: Option<String>,
     /// The levels side by side.
     pub sheet_file: Option<String>,
+}
+
+/// What was made of a scene.
+#[derive(Serialize)]
+pub struct SceneRow {
+    pub input: String,
+    /// The scene with levels.
+    pub scene_file: String,
+    /// Parts with more than one level.
+    pub chains: usize,
+    /// Parts that are chunks of a larger mesh.
+    pub chunks: usize,
+    /// Nodes that show a part which is no chunk.
+    pub nodes: usize,
+    /// What is shown and stays as it was.
+    pub left: Vec<LeftRow>,
+    /// What was odd about its meshes.
+    pub findings: Vec<String>,
+}
+
+#[derive(Serialize)]
+pub struct LeftRow {
+    pub place: String,
+    pub reason: &'static str,
+}
+
+impl LeftRow {
+    pub fn of(left: &Left) -> Self {
+        Self { place: left.place.clone(), reason: left.reason }
+    }
+}
+
+/// What one input came to.
+pub enum Baked {
+    Mesh(Box<MeshRow>),
+    Scene(SceneRow, Vec<MeshRow>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -91,15 +130,19 @@ pub struct LeftOutRow {
 }
 
 impl Summary {
-    pub fn of(found: &Found, results: Vec<anyhow::Result<MeshRow>>) -> Self {
+    pub fn of(found: &Found, results: Vec<anyhow::Result<Baked>>) -> Self {
         let nothing = found.nothing.iter().map(|(path, rule)| {
             let input = path.display().to_string();
             Failure { error: format!("{input}: {rule}"), input }
         });
-        let mut summary = Self { meshes: Vec::new(), failed: nothing.collect() };
+        let mut summary = Self { meshes: Vec::new(), scenes: Vec::new(), failed: nothing.collect() };
         for (input, result) in found.inputs.iter().zip(results) {
             match result {
-                Ok(row) => summary.meshes.push(row),
+                Ok(Baked::Mesh(row)) => summary.meshes.push(*row),
+                Ok(Baked::Scene(scene, parts)) => {
+                    summary.scenes.push(scene);
+                    summary.meshes.extend(parts);
+                }
                 Err(error) => {
                     let input = input.file.display().to_string();
                     summary.failed.push(Failure { input, error: format!("{error:#}") });
@@ -162,6 +205,7 @@ impl LeftOutRow {
         let reason = match left_out.reason {
             Reason::NotCoarser => "hardly coarser than the level before",
             Reason::TooFar => "too far from level 0",
+            Reason::Misfit => "no fit for the neighbouring chunks",
             Reason::Empty => "nothing is left of it",
         };
         Self {

@@ -1,6 +1,6 @@
 //! A bake on the terminal: a row per level, or per mesh where there are many, and what else there is to say.
 
-use super::summary::{LevelRow, MeshRow, Status, Summary};
+use super::summary::{LevelRow, MeshRow, SceneRow, Status, Summary};
 use crate::text::{self, count, counted, plain, significant};
 
 /// With more meshes than this there is a row for each, and not for each of its levels.
@@ -16,7 +16,8 @@ pub fn of(summary: &Summary) -> String {
         return String::new();
     }
     let table = if meshes.len() > FEW { mesh_table(meshes) } else { level_table(meshes) };
-    notes(meshes).iter().fold(table + "\n", |text, note| text + note + "\n")
+    let scenes = summary.scenes.iter().flat_map(scene_notes);
+    notes(meshes).into_iter().chain(scenes).fold(table + "\n", |text, note| text + &note + "\n")
 }
 
 const UNITS: &str = "units";
@@ -92,6 +93,32 @@ fn notes(meshes: &[MeshRow]) -> Vec<String> {
     let kept = if kept > 0 { format!("; {kept} kept as baked before") } else { String::new() };
     notes.push(format!("{baked} baked: {simplify} s to simplify, {measure} s to measure{kept}."));
     notes.extend(meshes.iter().filter_map(|mesh| mesh.scene_file.clone().or(mesh.table_file.clone())));
+    notes.dedup();
+    notes
+}
+
+/// What was done to a scene, and what was not.
+fn scene_notes(scene: &SceneRow) -> Vec<String> {
+    let SceneRow { input, chains, chunks, left, findings, .. } = scene;
+    let name = plain(input);
+    let mut notes: Vec<String> =
+        findings.iter().take(FINDINGS).map(|finding| format!("{name}: {}", plain(finding))).collect();
+    if findings.len() > FINDINGS {
+        notes.push(format!("{name}: {} more", counted(findings.len() - FINDINGS, "finding")));
+    }
+    notes.push(format!(
+        "{name}: {} have levels, {} among them.",
+        counted(*chains, "part"),
+        counted(*chunks, "chunk")
+    ));
+    notes.extend(
+        left.iter()
+            .take(FINDINGS)
+            .map(|l| format!("{name}: {} is left alone: {}", plain(&l.place), l.reason)),
+    );
+    if left.len() > FINDINGS {
+        notes.push(format!("{name}: {} more left alone", left.len() - FINDINGS));
+    }
     notes
 }
 

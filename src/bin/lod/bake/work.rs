@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::inputs::Input;
 
 /// Takes how much of a mesh is done, from 0 to 1.
-pub type Tell<'a> = dyn FnMut(f64) + 'a;
+pub type Tell<'a> = dyn FnMut(f64) + Send + 'a;
 
 /// What `bake` makes of each input, in their order; `jobs` of them at a time.
 pub fn all<T: Send>(
@@ -21,30 +21,38 @@ pub fn all<T: Send>(
 ) -> Vec<T> {
     let sizes: Vec<u64> = inputs.iter().map(size).collect();
     bar.set_length(sizes.iter().sum());
+    each(inputs, jobs, |i, input| {
+        bar.set_message(input.name.clone());
+        let mut share = Share { bar, size: sizes[i], told: 0 };
+        let result = bake(input, &mut |done| share.tell(done));
+        share.tell(1.0);
+        result
+    })
+}
+
+/// What `work` makes of each item, told with its number, in their order; `jobs` of them at a time.
+pub fn each<I: Sync, T: Send>(items: &[I], jobs: usize, work: impl Fn(usize, &I) -> T + Sync) -> Vec<T> {
     let next = AtomicUsize::new(0);
-    let results: Mutex<Vec<(usize, T)>> = Mutex::new(Vec::with_capacity(inputs.len()));
-    let work = || {
-        while let Some((i, input)) = take(&next, inputs) {
-            bar.set_message(input.name.clone());
-            let mut share = Share { bar, size: sizes[i], told: 0 };
-            let result = bake(input, &mut |done| share.tell(done));
-            share.tell(1.0);
+    let results: Mutex<Vec<(usize, T)>> = Mutex::new(Vec::with_capacity(items.len()));
+    let worker = || {
+        while let Some((i, item)) = take(&next, items) {
+            let result = work(i, item);
             // A thread that panics ends the scope with it: nobody looks at what it may have left broken.
             results.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push((i, result));
         }
     };
     thread::scope(|scope| {
-        (1..jobs.min(inputs.len())).for_each(|_| _ = scope.spawn(work));
-        work();
+        (1..jobs.min(items.len())).for_each(|_| _ = scope.spawn(worker));
+        worker();
     });
     let mut results = results.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
     results.sort_unstable_by_key(|&(i, _)| i);
     results.into_iter().map(|(_, result)| result).collect()
 }
 
-fn take<'a>(next: &AtomicUsize, inputs: &'a [Input]) -> Option<(usize, &'a Input)> {
+fn take<'a, I>(next: &AtomicUsize, items: &'a [I]) -> Option<(usize, &'a I)> {
     let i = next.fetch_add(1, Ordering::Relaxed);
-    inputs.get(i).map(|input| (i, input))
+    items.get(i).map(|item| (i, item))
 }
 
 /// How much work an input is thought to be: its size, in bytes, and a bit for each file.
