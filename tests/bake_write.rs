@@ -246,7 +246,10 @@ proptest! {
     /// Whatever a mesh has, glTF's rules hold of what is written.
     #[test]
     fn attributes_keep_the_rules(
-        rows in prop::collection::vec(prop::array::uniform8(prop_oneof![Just(0.0), Just(f32::NAN), Just(f32::MAX), -2.0..2.0f32]), 3..12),
+        rows in prop::collection::vec(
+            prop::array::uniform8(prop_oneof![Just(0.0), Just(f32::NAN), Just(f32::MAX), -2.0..2.0f32]),
+            3..12,
+        ),
         joints in prop::array::uniform4(0..2_u16),
     ) {
         let wedges: Vec<u32> = (0..rows.len() as u32).collect();

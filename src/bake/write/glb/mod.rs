@@ -178,8 +178,8 @@ impl Glb {
             Some(chain) => self.add_levels(&node, chain.0),
             None => self.nodes.push(Placed::of(&node, &node.name)),
         }
-        let mut extras = self.nodes[id].node.remove("extras").map(object).unwrap_or_default();
-        extras.extend(node.extras);
+        let mut extras = node.extras;
+        extras.extend(self.nodes[id].node.remove("extras").map(object).unwrap_or_default());
         if !extras.is_empty() {
             self.nodes[id].node.insert("extras".to_owned(), Value::Object(extras));
         }

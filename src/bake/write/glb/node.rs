@@ -20,7 +20,7 @@ pub struct Node {
     pub chain: Option<ChainId>,
     /// From its own space to its parent's; all its numbers finite.
     pub transform: Transform,
-    /// What else to say of it.
+    /// What else to say of it; the coverages of its chain, where it has any, stand above `MSFT_screencoverage` in here.
     pub extras: Map<String, Value>,
 }
 
