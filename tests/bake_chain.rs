@@ -5,8 +5,9 @@ use std::ops::ControlFlow;
 
 use glam::{DVec3, Vec3};
 use lod_budget::bake::chain::{
-    Accuracy, BakeError, Chain, Length, Limits, Plan, Preset, Progress, Reason, Stops, quietly,
+    Accuracy, BakeError, Chain, Length, Limits, Look, Plan, Preset, Progress, Reason, Stops, quietly,
 };
+use lod_budget::bake::deviation;
 use lod_budget::bake::shapes::{icosphere, terrain, torus};
 use lod_budget::bake::{Group, Mesh, Surface};
 use lod_budget::table::{Level, MAX_LEVELS, accuracy_of};
@@ -23,7 +24,13 @@ fn refused(plan: &Plan, mesh: &Mesh) -> BakeError {
 }
 
 fn plan(stops: Stops) -> Plan {
-    Plan { stops, limits: Limits::NONE, ..Plan::default() }
+    Plan { stops, limits: Limits::NONE, ..quick() }
+}
+
+/// Few samples: root mean squares are another test's.
+fn quick() -> Plan {
+    let measure = deviation::Options { max_samples: 1 << 10, ..deviation::Options::default() };
+    Plan { measure, look: None, ..Plan::default() }
 }
 
 fn counts(chain: &Chain) -> Vec<usize> {
@@ -148,7 +155,7 @@ fn check_table(chain: &Chain, accuracy: Accuracy) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 16, ..ProptestConfig::default() })]
 
     #[test]
     fn every_chain_is_coarser_farther_and_bounded(mesh in shape(), stops in stops()) {
@@ -170,7 +177,7 @@ proptest! {
 #[test]
 fn counts_of_triangles_are_met() {
     let ball = icosphere(12).into();
-    let halves = bake(&Plan { limits: Limits { levels: 5, ..Limits::NONE }, ..Plan::default() }, &ball);
+    let halves = bake(&Plan { limits: Limits { levels: 5, ..Limits::NONE }, ..quick() }, &ball);
     assert_eq!(counts(&halves), [2880, 1440, 720, 360, 180]);
     let named = bake(&plan(Stops::Triangles(vec![5000, 1000, 100])), &ball);
     assert_eq!(counts(&named), [2880, 1000, 100]);
@@ -199,11 +206,11 @@ fn target_errors_are_used_up() {
 fn the_automatic_chain_ends_where_its_limits_say() {
     let ball: Mesh = icosphere(16).into();
     let limits = Limits { most_error: Some(Length::OfDiagonal(0.01)), ..Limits::default() };
-    let chain = bake(&Plan { limits, ..Plan::default() }, &ball);
+    let chain = bake(&Plan { limits, ..quick() }, &ball);
     let last = chain.levels.last().expect("level 0 at least");
     assert!(last.deviation.hausdorff <= 0.01 * diagonal(&ball) && last.triangles() > 16);
     assert!(!chain.left_out.is_empty() && chain.left_out.iter().all(|level| level.reason == Reason::TooFar));
-    let coarse = bake(&Plan { limits: Limits { most_error: None, ..limits }, ..Plan::default() }, &ball);
+    let coarse = bake(&Plan { limits: Limits { most_error: None, ..limits }, ..quick() }, &ball);
     assert!((16..32).contains(coarse.levels.last().map(|level| level.triangles()).as_ref().unwrap_or(&0)));
 }
 
@@ -278,14 +285,14 @@ fn plans_out_of_range_are_refused_before_anything_is_done() {
     let refused = |plan: &Plan| refused(plan, &Mesh::default()).to_string();
     assert_eq!(refused(&plan(many)), "a chain must have at most 254 levels, not 255");
     let limits = Limits { levels: 255, ..Limits::NONE };
-    assert_eq!(refused(&Plan { limits, ..Plan::default() }), "a chain must have 1 to 254 levels, not 255");
+    assert_eq!(refused(&Plan { limits, ..quick() }), "a chain must have 1 to 254 levels, not 255");
     assert_eq!(refused(&plan(Stops::Ratio(0.0))), "the ratio must be between 0 and 1, not 0");
 }
 
 #[test]
 fn as_many_levels_as_a_table_holds() {
-    let ball = icosphere(8).into();
-    let chain = bake(&plan(Stops::Triangles((1..MAX_LEVELS).map(|i| 1280 - 4 * i).collect())), &ball);
+    let ball = icosphere(6).into();
+    let chain = bake(&plan(Stops::Triangles((1..MAX_LEVELS).map(|i| 720 - 2 * i).collect())), &ball);
     assert_eq!(chain.levels.len(), MAX_LEVELS);
     assert!(chain.table(Accuracy::default()).is_ok());
 }
@@ -313,9 +320,9 @@ fn a_bake_can_be_cancelled_at_every_report() {
 
 #[test]
 fn every_preset_bakes_its_levels() {
-    let land: Mesh = terrain(40, 7).into();
+    let land: Mesh = terrain(12, 7).into();
     for preset in Preset::ALL {
-        let plan = preset.plan();
+        let plan = Plan { measure: quick().measure, look: None, ..preset.plan() };
         let chain = bake(&plan, &land);
         check(&land, &chain);
         assert!((2..=plan.limits.levels).contains(&chain.levels.len()), "{preset:?}");
@@ -332,7 +339,7 @@ fn accuracy_and_size_are_what_they_are_said_to_be() {
     let chain = bake(&Plan::default(), &ball);
     let tables = ACCURACIES.map(|accuracy| chain.table(accuracy).expect("a table"));
     let radius = f64::from(tables[0].bounds().radius);
-    assert!((1.0..1.1).contains(&radius));
+    assert!((0.99..1.1).contains(&radius));
     for (i, level) in chain.levels.iter().enumerate().skip(1) {
         let record = |k: usize| tables[k].levels()[i];
         let band = 2.0 * level.deviation.rms() / radius;
@@ -356,6 +363,21 @@ fn bytes_and_draws_are_those_of_the_attributes_and_groups_there_are() {
     mesh.groups.push(Group { triangles: 1..1, ..Group::default() });
     let rich = bake(&Plan::default(), &mesh);
     assert_eq!((rich.levels[0].bytes(), rich.levels[0].draws()), (3 * (12 + 12 + 16) + 3 * 2, 1));
+}
+
+#[test]
+fn levels_are_looked_at_and_level_0_is_not() {
+    let mut land: Mesh = terrain(16, 3).into();
+    land.normals = vec![Vec3::Y; land.wedges.len()];
+    let chain = bake(&Plan { look: Some(Look::default()), ..quick() }, &land);
+    assert!(chain.levels[0].appearance.is_none() && chain.levels.len() > 2);
+    for level in &chain.levels[1..] {
+        let seen = level.appearance.as_ref().expect("looked at");
+        assert!(seen.attributes.normals_deg.as_ref().is_some_and(|normals| normals.max() < 0.1));
+        assert!(seen.attributes.colours.is_none() && seen.attributes.uvs.is_empty());
+        // No silhouette moves farther than the surface does.
+        assert!(seen.silhouette.distance() <= level.deviation.hausdorff + seen.silhouette.error());
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::measure::{Gauge, accumulate};
 use super::search::{self, Found};
-use super::{BakeError, Chain, ChainLevel, LeftOut, Length, Limits, Reason, Stops};
+use super::{Appearance, BakeError, Chain, ChainLevel, LeftOut, Length, Limits, Look, Reason, Stops};
 use crate::bake::deviation::{self, Deviation};
 use crate::bake::mesh::Mesh;
 use crate::bake::repair;
@@ -21,6 +21,8 @@ pub struct Plan {
     pub limits: Limits,
     /// How closely levels are measured.
     pub measure: deviation::Options,
+    /// How closely they are looked at; `None` not to look.
+    pub look: Option<Look>,
 }
 
 impl Default for Plan {
@@ -31,6 +33,7 @@ impl Default for Plan {
             stops: Stops::Ratio(0.5),
             limits: Limits::default(),
             measure: deviation::Options::default(),
+            look: Some(Look::default()),
         }
     }
 }
@@ -188,7 +191,8 @@ struct Draft<'a> {
 
 impl<'a> Draft<'a> {
     fn new(plan: &'a Plan, diagonal: f64, finest: Mesh, locked: Vec<bool>) -> Self {
-        let finest = ChainLevel { mesh: finest, deviation: Deviation::default(), error: 0.0 };
+        let finest =
+            ChainLevel { mesh: finest, deviation: Deviation::default(), error: 0.0, appearance: None };
         Self { plan, diagonal, locked, levels: vec![finest], left_out: Vec::new() }
     }
 
@@ -244,7 +248,11 @@ impl<'a> Draft<'a> {
             Some(reason) => self.leave_out(target, triangles, reason),
             None => match measured(mesh)? {
                 level if self.is_too_far(&level) => self.leave_out(target, triangles, Reason::TooFar),
-                level => self.levels.push(level),
+                level => {
+                    let look = |look| Appearance::of(&level.mesh, self.finest(), look);
+                    let appearance = self.plan.look.as_ref().map(look).transpose()?;
+                    self.levels.push(ChainLevel { appearance, ..level });
+                }
             },
         }
         Ok(())
