@@ -8,13 +8,15 @@ use super::{Appearance, BakeError, Chain, ChainLevel, LeftOut, Length, Limits, L
 use crate::bake::deviation::{self, Deviation};
 use crate::bake::mesh::Mesh;
 use crate::bake::repair;
-use crate::bake::simplify::{self, GarlandHeckbert, Simplified, Simplifier, Stopped, Target, Task};
+use crate::bake::simplify::{self, GarlandHeckbert, Method, Simplified, Simplifier, Stopped, Target, Task};
 
 /// How to make the levels of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// What simplifies.
-    pub method: GarlandHeckbert,
+    pub method: Method,
+    /// How [`Method::Quadric`] does it; the other methods are as they are by default.
+    pub quadric: GarlandHeckbert,
     /// Where levels are made.
     pub stops: Stops,
     /// Where the chain ends.
@@ -29,7 +31,8 @@ impl Default for Plan {
     /// Halves the triangles until the default limits say so.
     fn default() -> Self {
         Self {
-            method: GarlandHeckbert::default(),
+            method: Method::default(),
+            quadric: GarlandHeckbert::default(),
             stops: Stops::Ratio(0.5),
             limits: Limits::default(),
             measure: deviation::Options::default(),
@@ -111,6 +114,13 @@ impl Plan {
         self.limits.check()
     }
 
+    fn simplifier(&self) -> Box<dyn Simplifier> {
+        match self.method {
+            Method::Quadric => Box::new(self.quadric),
+            method => method.simplifier(),
+        }
+    }
+
     /// The levels of these targets, each from the task's mesh itself.
     pub(super) fn simplify(
         &self,
@@ -124,7 +134,7 @@ impl Plan {
         if tell(simplify::Progress { from, triangles: from, target: first.triangles }).is_break() {
             return Err(BakeError::Cancelled);
         }
-        let levels = self.method.chain(&Task { target: first, ..*task }, targets, &mut tell)?;
+        let levels = self.simplifier().chain(&Task { target: first, ..*task }, targets, &mut tell)?;
         match levels.iter().any(|level| level.stopped == Stopped::Cancelled) {
             true => Err(BakeError::Cancelled),
             false => Ok(levels),

@@ -78,11 +78,17 @@ impl Preset {
     }
 }
 
-/// The first half of a row, and the method that the second half makes.
-fn plan(ratio: f64, levels: usize, least_triangles: usize, most_error: f64, method: GarlandHeckbert) -> Plan {
+/// The first half of a row, and what the second half makes.
+fn plan(
+    ratio: f64,
+    levels: usize,
+    least_triangles: usize,
+    most_error: f64,
+    quadric: GarlandHeckbert,
+) -> Plan {
     let most_error = Some(Length::OfDiagonal(most_error));
     Plan {
-        method,
+        quadric,
         stops: Stops::Ratio(ratio),
         limits: Limits { levels, least_triangles, most_error, ..Limits::default() },
         ..Plan::default()
