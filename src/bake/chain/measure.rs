@@ -1,6 +1,6 @@
 //! Levels and what is measured of them.
 
-use super::{BakeError, Chain};
+use super::{Appearance, BakeError, Chain};
 use crate::bake::deviation::{self, Deviation, Ruler};
 use crate::bake::mesh::Mesh;
 
@@ -13,6 +13,8 @@ pub struct ChainLevel {
     pub deviation: Deviation,
     /// The greatest Hausdorff bound of this and all finer levels, rounded up, in object units: the runtime's contract.
     pub error: f32,
+    /// How it looks beside level 0; `None` for level 0 itself, and where nobody looked.
+    pub appearance: Option<Appearance>,
 }
 
 impl ChainLevel {
@@ -59,11 +61,11 @@ impl<'a> Gauge<'a> {
         Ok(Self { ruler: Ruler::new(&finest.surface())?, options })
     }
 
-    /// The level, its `error` being that of itself alone until the chain is whole.
+    /// The level as measured, not yet looked at. Its `error` is that of itself alone until the chain is whole.
     pub(super) fn measured(&self, mesh: Mesh) -> Result<ChainLevel, BakeError> {
         let deviation = self.ruler.deviation(&mesh.surface(), self.options)?;
         let error = deviation::running_max(&[deviation])[0];
-        Ok(ChainLevel { mesh, deviation, error })
+        Ok(ChainLevel { mesh, deviation, error, appearance: None })
     }
 }
 

@@ -15,6 +15,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod appearance;
 mod error;
 mod measure;
 mod plan;
@@ -23,6 +24,7 @@ mod search;
 mod stops;
 mod table;
 
+pub use appearance::{Appearance, Look};
 pub use error::BakeError;
 pub use measure::ChainLevel;
 pub use plan::{Plan, Progress, quietly};

@@ -4,33 +4,39 @@ use std::ops::ControlFlow;
 
 use super::measure::{Gauge, accumulate};
 use super::search::{self, Found};
-use super::{BakeError, Chain, ChainLevel, LeftOut, Length, Limits, Reason, Stops};
+use super::{Appearance, BakeError, Chain, ChainLevel, LeftOut, Length, Limits, Look, Reason, Stops};
 use crate::bake::deviation::{self, Deviation};
 use crate::bake::mesh::Mesh;
 use crate::bake::repair;
-use crate::bake::simplify::{self, GarlandHeckbert, Simplified, Simplifier, Stopped, Target, Task};
+use crate::bake::simplify::{self, GarlandHeckbert, Method, Simplified, Simplifier, Stopped, Target, Task};
 
 /// How to make the levels of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// What simplifies.
-    pub method: GarlandHeckbert,
+    pub method: Method,
+    /// How [`Method::Quadric`] does it; the other methods are as they are by default.
+    pub quadric: GarlandHeckbert,
     /// Where levels are made.
     pub stops: Stops,
     /// Where the chain ends.
     pub limits: Limits,
     /// How closely levels are measured.
     pub measure: deviation::Options,
+    /// How closely they are looked at; `None` not to look.
+    pub look: Option<Look>,
 }
 
 impl Default for Plan {
     /// Halves the triangles until the default limits say so.
     fn default() -> Self {
         Self {
-            method: GarlandHeckbert::default(),
+            method: Method::default(),
+            quadric: GarlandHeckbert::default(),
             stops: Stops::Ratio(0.5),
             limits: Limits::default(),
             measure: deviation::Options::default(),
+            look: Some(Look::default()),
         }
     }
 }
@@ -108,6 +114,13 @@ impl Plan {
         self.limits.check()
     }
 
+    fn simplifier(&self) -> Box<dyn Simplifier> {
+        match self.method {
+            Method::Quadric => Box::new(self.quadric),
+            method => method.simplifier(),
+        }
+    }
+
     /// The levels of these targets, each from the task's mesh itself.
     pub(super) fn simplify(
         &self,
@@ -121,7 +134,7 @@ impl Plan {
         if tell(simplify::Progress { from, triangles: from, target: first.triangles }).is_break() {
             return Err(BakeError::Cancelled);
         }
-        let levels = self.method.chain(&Task { target: first, ..*task }, targets, &mut tell)?;
+        let levels = self.simplifier().chain(&Task { target: first, ..*task }, targets, &mut tell)?;
         match levels.iter().any(|level| level.stopped == Stopped::Cancelled) {
             true => Err(BakeError::Cancelled),
             false => Ok(levels),
@@ -188,7 +201,8 @@ struct Draft<'a> {
 
 impl<'a> Draft<'a> {
     fn new(plan: &'a Plan, diagonal: f64, finest: Mesh, locked: Vec<bool>) -> Self {
-        let finest = ChainLevel { mesh: finest, deviation: Deviation::default(), error: 0.0 };
+        let finest =
+            ChainLevel { mesh: finest, deviation: Deviation::default(), error: 0.0, appearance: None };
         Self { plan, diagonal, locked, levels: vec![finest], left_out: Vec::new() }
     }
 
@@ -244,7 +258,11 @@ impl<'a> Draft<'a> {
             Some(reason) => self.leave_out(target, triangles, reason),
             None => match measured(mesh)? {
                 level if self.is_too_far(&level) => self.leave_out(target, triangles, Reason::TooFar),
-                level => self.levels.push(level),
+                level => {
+                    let look = |look| Appearance::of(&level.mesh, self.finest(), look);
+                    let appearance = self.plan.look.as_ref().map(look).transpose()?;
+                    self.levels.push(ChainLevel { appearance, ..level });
+                }
             },
         }
         Ok(())

@@ -1,21 +1,22 @@
 //! Plans for kinds of objects: what engines call LOD groups.
 
 use super::{Length, Limits, Plan, Stops};
-use crate::bake::simplify::{GarlandHeckbert, Topology};
+use crate::bake::simplify::{Attributes, GarlandHeckbert, Topology};
 
 /// A kind of object, and what its levels should be like.
 ///
-/// | | each level has | levels | least triangles | most error | topology | border |
-/// |---|---|---|---|---|---|---|
-/// | [`SmallProp`](Self::SmallProp) | ⅓ | 5 | 8 | 15 % | free | 3 |
-/// | [`LargeProp`](Self::LargeProp) | ½ | 8 | 24 | 8 % | preserved | 10 |
-/// | [`Foliage`](Self::Foliage) | ½ | 5 | 16 | 10 % | preserved | 30 |
-/// | [`LevelArchitecture`](Self::LevelArchitecture) | ½ | 6 | 16 | 3 % | preserved | 100 |
-/// | [`Vista`](Self::Vista) | ¼ | 5 | 12 | 20 % | free | 3 |
-/// | [`Character`](Self::Character) | ½ | 7 | 150 | 4 % | preserved | 10 |
+/// | | each level has | levels | least triangles | most error | topology | border | attributes |
+/// |---|---|---|---|---|---|---|---|
+/// | [`SmallProp`](Self::SmallProp) | ⅓ | 5 | 8 | 15 % | free | 3 | ½ |
+/// | [`LargeProp`](Self::LargeProp) | ½ | 8 | 24 | 8 % | preserved | 10 | 1 |
+/// | [`Foliage`](Self::Foliage) | ½ | 5 | 16 | 10 % | preserved | 30 | 1 |
+/// | [`LevelArchitecture`](Self::LevelArchitecture) | ½ | 6 | 16 | 3 % | preserved | 100 | 1 |
+/// | [`Vista`](Self::Vista) | ¼ | 5 | 12 | 20 % | free | 3 | ¼ |
+/// | [`Character`](Self::Character) | ½ | 7 | 150 | 4 % | preserved | 10 | 2 |
 ///
-/// The error is a share of the diagonal, the border a weight ([`GarlandHeckbert::border`]). A level that saves less than
-/// a fifth of the triangles is left out.
+/// The error is a share of the diagonal, the border a weight ([`GarlandHeckbert::border`]); attributes count so many
+/// times their usual weights ([`Attributes`]). A level that saves less than a fifth of the triangles is left out. Presets
+/// are for the method `quadric`; what they say of weights and topology means nothing to others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Preset {
     /// Crates, lamps, dishes: many, mostly small in the image. Few levels in large steps, as each costs memory for every
@@ -67,36 +68,39 @@ impl Preset {
         use Topology::{Free, Preserved};
         let third = 1.0 / 3.0;
         match self {
-            Self::SmallProp => plan(third, 5, 8, 0.15, Free, 3.0),
-            Self::LargeProp => plan(0.5, 8, 24, 0.08, Preserved, 10.0),
-            Self::Foliage => plan(0.5, 5, 16, 0.1, Preserved, 30.0),
-            Self::LevelArchitecture => plan(0.5, 6, 16, 0.03, Preserved, 100.0),
-            Self::Vista => plan(0.25, 5, 12, 0.2, Free, 3.0),
-            Self::Character => plan(0.5, 7, 150, 0.04, Preserved, 10.0),
+            Self::SmallProp => plan(third, 5, 8, 0.15, held(Free, 3.0, 0.5)),
+            Self::LargeProp => plan(0.5, 8, 24, 0.08, held(Preserved, 10.0, 1.0)),
+            Self::Foliage => plan(0.5, 5, 16, 0.1, held(Preserved, 30.0, 1.0)),
+            Self::LevelArchitecture => plan(0.5, 6, 16, 0.03, held(Preserved, 100.0, 1.0)),
+            Self::Vista => plan(0.25, 5, 12, 0.2, held(Free, 3.0, 0.25)),
+            Self::Character => plan(0.5, 7, 150, 0.04, held(Preserved, 10.0, 2.0)),
         }
     }
 }
 
-/// A row of the table.
+/// The first half of a row, and what the second half makes.
 fn plan(
     ratio: f64,
     levels: usize,
     least_triangles: usize,
     most_error: f64,
-    topology: Topology,
-    border: f32,
+    quadric: GarlandHeckbert,
 ) -> Plan {
+    let most_error = Some(Length::OfDiagonal(most_error));
     Plan {
-        method: GarlandHeckbert { topology, border, ..GarlandHeckbert::default() },
+        quadric,
         stops: Stops::Ratio(ratio),
-        limits: Limits {
-            levels,
-            least_triangles,
-            most_error: Some(Length::OfDiagonal(most_error)),
-            ..Limits::default()
-        },
+        limits: Limits { levels, least_triangles, most_error, ..Limits::default() },
         ..Plan::default()
     }
+}
+
+/// The second half of a row: what is held how strongly.
+fn held(topology: Topology, border: f32, attributes: f32) -> GarlandHeckbert {
+    let Attributes { normals, uvs, colours } = Attributes::default();
+    let attributes =
+        Attributes { normals: attributes * normals, uvs: attributes * uvs, colours: attributes * colours };
+    GarlandHeckbert { topology, border, attributes, ..GarlandHeckbert::default() }
 }
 
 #[cfg(test)]

@@ -31,9 +31,9 @@ pub fn bake(
         if let Some(row) = before.as_ref().and_then(|record| record.kept(&folder, settings, &stamps)) {
             return Ok(row.of_input(input).within(&folder));
         }
-        folder.check_owner(before.as_ref(), &stamps)?;
+        folder.check_owner(before.as_ref(), &stamps).with_context(|| input.file.display().to_string())?;
     }
-    folder.check_inputs(found)?;
+    folder.check_inputs(found).with_context(|| input.file.display().to_string())?;
     let (row, outputs) = baked(input, settings, tell)?;
     let row = write(row, outputs, &folder, before.as_ref(), settings, stamps)?;
     Ok(row.within(&folder))

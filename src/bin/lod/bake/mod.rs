@@ -18,6 +18,7 @@ use std::thread;
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lod_budget::bake::chain::{Accuracy, Length, Preset};
+use lod_budget::bake::simplify::Method;
 
 use inputs::{Found, Input};
 use scene::SceneArgs;
@@ -68,8 +69,8 @@ pub struct Args {
 #[command(next_help_heading = "Levels")]
 struct ChainArgs {
     /// How to simplify
-    #[arg(long, value_name = "NAME", value_enum, default_value = "quadric")]
-    method: MethodKind,
+    #[arg(long, value_name = "NAME", default_value = "quadric", value_parser = methods())]
+    method: Method,
     /// Choices for a kind of object
     #[arg(long, value_name = "KIND", value_parser = presets())]
     preset: Option<Preset>,
@@ -119,12 +120,6 @@ enum Format {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum MethodKind {
-    /// Edge contraction by quadric error (Garland and Heckbert 1997)
-    Quadric,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
 enum AccuracyKind {
     /// The measured root mean square distance
     Rms,
@@ -160,6 +155,11 @@ pub fn run(args: &Args, out: &mut dyn Write) -> anyhow::Result<Vec<String>> {
         write!(out, "{}", words::of(&summary))?;
     }
     Ok(summary.failed.into_iter().map(|failure| failure.error).collect())
+}
+
+fn methods() -> impl TypedValueParser<Value = Method> {
+    let names = PossibleValuesParser::new(Method::ALL.map(Method::name));
+    names.try_map(|name| name.parse::<Method>())
 }
 
 fn presets() -> impl TypedValueParser<Value = Preset> {

@@ -46,8 +46,7 @@ impl Folder {
         let Some(other) = other.filter(|other| other.file != inputs[0].file) else { return Ok(()) };
         ensure!(
             !Path::new(&other.file).exists(),
-            "{}: {} must not be replaced, which was baked from {}; take another --out, or --force",
-            inputs[0].file,
+            "{} must not be replaced, which was baked from {}; take another --out, or --force",
             self.path.display(),
             other.file
         );
@@ -62,7 +61,9 @@ impl Folder {
             input.parent() == Some(&here) && self.is_output(&name)
         });
         match own {
-            Some(input) => Err(anyhow!("{}: it must not be replaced; take another --out", input.display())),
+            Some(input) => {
+                Err(anyhow!("{}, an input, must not be replaced; take another --out", input.display()))
+            }
             None => Ok(()),
         }
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use lod_budget::bake::chain::{Accuracy, Limits, Plan, Preset, Stops};
 use lod_budget::bake::scene;
 
-use super::{Args, ChainArgs, Format, MethodKind};
+use super::{Args, ChainArgs, Format};
 
 /// How every mesh is baked.
 pub struct Settings {
@@ -50,19 +50,11 @@ impl Settings {
     }
 }
 
-impl MethodKind {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Quadric => "quadric",
-        }
-    }
-}
-
 impl ChainArgs {
     /// The preset's plan, or the default one, changed by what was asked for. Levels that are named one by one are made
     /// whatever the limits of the preset.
     fn plan(&self) -> Plan {
-        let plan = self.preset.map_or_else(Plan::default, Preset::plan);
+        let plan = Plan { method: self.method, ..self.preset.map_or_else(Plan::default, Preset::plan) };
         match (self.named_stops(), self.levels) {
             (Some(stops), _) => Plan { stops, limits: Limits::NONE, ..plan },
             (None, Some(levels)) => {

@@ -1,6 +1,7 @@
 //! What a bake comes to: the object that `--json` prints, and that the table is made from.
 
-use lod_budget::bake::chain::{Chain, ChainLevel, LeftOut, Reason};
+use lod_budget::bake::chain::{Appearance, Chain, ChainLevel, LeftOut, Reason};
+use lod_budget::bake::deviation::attributes::Difference;
 use lod_budget::bake::scene::Left;
 use lod_budget::{LevelRecord, LodTable};
 use serde::{Deserialize, Serialize};
@@ -117,8 +118,32 @@ pub struct LevelRow {
     pub error: f64,
     pub accuracy: f32,
     pub min_size: Option<f32>,
+    /// `null` for level 0.
+    pub appearance: Option<AppearanceRow>,
     /// This level alone.
     pub file: Option<String>,
+}
+
+/// How a level looks beside level 0: estimates. `null` where one of them has no such attribute.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct AppearanceRow {
+    /// Angles between normals, in degrees.
+    pub normals_deg: Option<DifferenceRow>,
+    /// Of each set of texture coordinates, in UV units.
+    pub uvs: Vec<Option<DifferenceRow>>,
+    /// As distances between linear RGBA.
+    pub colours: Option<DifferenceRow>,
+    /// How far silhouettes are apart, in object units, within `silhouette_error`.
+    pub silhouette: f64,
+    pub silhouette_error: f64,
+    /// The share by which silhouettes cover more; below 0 where they cover less.
+    pub area_change: Option<f64>,
+}
+
+#[derive(Clone, Serialize, Deserialize)]
+pub struct DifferenceRow {
+    pub rms: f64,
+    pub max: f64,
 }
 
 #[derive(Clone, Serialize, Deserialize)]
@@ -196,7 +221,25 @@ impl LevelRow {
             error: f64::from(level.error),
             accuracy: record.accuracy,
             min_size: record.min_size,
+            appearance: level.appearance.as_ref().map(AppearanceRow::of),
             file: None,
+        }
+    }
+}
+
+impl AppearanceRow {
+    fn of(appearance: &Appearance) -> Self {
+        let Appearance { attributes, silhouette } = appearance;
+        let row = |difference: &Option<Difference>| {
+            difference.as_ref().map(|d| DifferenceRow { rms: d.rms(), max: d.max() })
+        };
+        Self {
+            normals_deg: row(&attributes.normals_deg),
+            uvs: attributes.uvs.iter().map(row).collect(),
+            colours: row(&attributes.colours),
+            silhouette: silhouette.distance(),
+            silhouette_error: silhouette.error(),
+            area_change: silhouette.area_change(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A bake on the terminal: a row per level, or per mesh where there are many, and what else there is to say.
 
 use super::summary::{LevelRow, MeshRow, SceneRow, Status, Summary};
-use crate::text::{self, count, counted, plain, significant};
+use crate::text::{self, count, counted, fixed, percent, plain, significant};
 
 /// With more meshes than this there is a row for each, and not for each of its levels.
 const FEW: usize = 8;
@@ -20,29 +20,31 @@ pub fn of(summary: &Summary) -> String {
     notes(meshes).into_iter().chain(scenes).fold(table + "\n", |text, note| text + &note + "\n")
 }
 
-const UNITS: &str = "units";
+const HEADINGS: [&str; 11] = [
+    "mesh",
+    "level",
+    "triangles",
+    "vertices",
+    "size\nkB",
+    "Hausdorff\nunits",
+    "error\n% diagonal",
+    "RMS\n% diagonal",
+    "normals\n° RMS",
+    "silhouette\n% area",
+    "accuracy",
+];
 
 fn level_table(meshes: &[MeshRow]) -> String {
-    let headings = [
-        ("mesh", ""),
-        ("level", ""),
-        ("triangles", ""),
-        ("vertices", ""),
-        ("size", "kB"),
-        ("Hausdorff", UNITS),
-        ("", "% diagonal"),
-        ("RMS", UNITS),
-        ("", "% diagonal"),
-        ("error", UNITS),
-        ("accuracy", ""),
-    ];
     let rows: Vec<Vec<String>> =
         meshes.iter().flat_map(|mesh| mesh.levels.iter().map(|level| level_row(mesh, level))).collect();
-    text::table(&headings.map(|(name, unit)| format!("{name}\n{unit}")), &rows)
+    text::table(&HEADINGS.map(str::to_owned), &rows)
 }
 
 fn level_row(mesh: &MeshRow, level: &LevelRow) -> Vec<String> {
     let share = |distance: f64| significant(100.0 * distance / mesh.diagonal, 3);
+    let seen = level.appearance.as_ref();
+    let normals = seen.and_then(|seen| seen.normals_deg.as_ref()).map(|normals| fixed(normals.rms, 2));
+    let area = seen.and_then(|seen| seen.area_change).map(|change| percent(change, 2));
     vec![
         if level.level == 0 { plain(&mesh.name) } else { String::new() },
         level.level.to_string(),
@@ -50,10 +52,10 @@ fn level_row(mesh: &MeshRow, level: &LevelRow) -> Vec<String> {
         count(level.vertices as u64),
         significant(level.bytes as f64 / 1e3, 3),
         significant(level.hausdorff, 4),
-        share(level.hausdorff),
-        significant(level.rms, 4),
+        share(level.error),
         share(level.rms),
-        significant(level.error, 4),
+        normals.unwrap_or_default(),
+        area.unwrap_or_default(),
         format!("{:.4}", level.accuracy),
     ]
 }
