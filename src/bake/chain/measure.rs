@@ -1,6 +1,6 @@
 //! Levels and what is measured of them.
 
-use super::{Appearance, BakeError};
+use super::{Appearance, BakeError, Chain};
 use crate::bake::deviation::{self, Deviation, Ruler};
 use crate::bake::mesh::Mesh;
 
@@ -75,4 +75,13 @@ pub(super) fn accumulate(levels: &mut [ChainLevel]) {
     for (level, error) in levels.iter_mut().zip(deviation::running_max(&deviations)) {
         level.error = error;
     }
+}
+
+/// What [`Chain::of_levels`] says.
+pub(super) fn chain(meshes: Vec<Mesh>, options: &deviation::Options) -> Result<Chain, BakeError> {
+    let finest = meshes.first().ok_or(BakeError::NoTriangles)?;
+    let gauge = Gauge::new(finest, options)?;
+    let mut levels = meshes.into_iter().map(|mesh| gauge.measured(mesh)).collect::<Result<Vec<_>, _>>()?;
+    accumulate(&mut levels);
+    Ok(Chain { levels, unreferenced: 0, left_out: Vec::new() })
 }

@@ -32,6 +32,8 @@ pub use preset::Preset;
 pub use stops::{Length, Limits, Stops};
 pub use table::Accuracy;
 
+use super::deviation;
+use super::mesh::Mesh;
 use super::simplify::Target;
 
 /// The levels of a mesh, measured.
@@ -43,6 +45,16 @@ pub struct Chain {
     pub unreferenced: usize,
     /// The levels that were asked for and are not there.
     pub left_out: Vec<LeftOut>,
+}
+
+impl Chain {
+    /// The chain of levels that somebody else made, each measured against the first.
+    ///
+    /// # Errors
+    /// No level; what cannot be measured.
+    pub fn of_levels(levels: Vec<Mesh>, measure: &deviation::Options) -> Result<Self, BakeError> {
+        measure::chain(levels, measure)
+    }
 }
 
 /// A level that was asked for and is not there.

@@ -17,6 +17,8 @@
 //! `extras.lod_max_distance`, where an author said how far one level is seen, is repeated for each: where the object ends
 //! is the author's to say.
 //!
+//! What an author made is measured as well ([`Scene::authored`]), so that accuracies can be weighed against each other.
+//!
 //! **Chunks**: a mesh much larger than its neighbours is in view near and far at once, and no level of it is right. It
 //! is [split](super::split): each chunk is an object of its own, a child of the node that showed the whole, and fits its
 //! neighbours at every mix of levels. Taken to be so is a mesh that ([`Chunks::Large`])
@@ -39,10 +41,11 @@
 //! }
 //! let levels: Vec<Vec<LevelOut>> =
 //!     chains.iter().map(|chain| chain.levels.iter().map(|level| LevelOut::new(&level.mesh)).collect()).collect();
-//! std::fs::write("town_lods.glb", scene.write(&levels)?)?;
+//! std::fs::write("town_lods.glb", scene.write(&levels, &[])?)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod authored;
 mod document;
 mod embed;
 mod large;
@@ -56,6 +59,7 @@ use std::path::Path;
 
 use glam::DMat4;
 
+pub use self::authored::Authored;
 use self::document::Document;
 use super::chain::{BakeError, Chain, LeftOut, Plan, Progress, Reason};
 use super::finding::Finding;
@@ -151,6 +155,7 @@ pub struct Scene<'a> {
     document: Document,
     parts: Vec<Part>,
     subjects: Vec<Subject>,
+    authored: Vec<Authored>,
     left: Vec<Left>,
     odd: Vec<Odd>,
 }
@@ -182,10 +187,12 @@ impl<'a> Scene<'a> {
             document,
             parts: Vec::new(),
             subjects: Vec::new(),
+            authored: Vec::new(),
             left: Vec::new(),
             odd: Vec::new(),
         };
         scene.survey(options)?;
+        scene.find_authored()?;
         Ok(scene)
     }
 
@@ -202,6 +209,12 @@ impl<'a> Scene<'a> {
         &self.parts
     }
 
+    /// Chains that the author made. They stay as they are, but can be told what is measured of them, so that all levels
+    /// of the scene are judged alike.
+    pub fn authored(&self) -> &[Authored] {
+        &self.authored
+    }
+
     /// What is shown and stays as it is.
     pub fn left(&self) -> &[Left] {
         &self.left
@@ -213,12 +226,18 @@ impl<'a> Scene<'a> {
     }
 
     /// The scene with levels, as GLB, with all buffers in it. `levels` has those of each part, finest first, in the order
-    /// of the parts; a part with no more than one gets none.
+    /// of the parts; a part with no more than one gets none. `authored` has those of each chain of the author's, of whom
+    /// only what was measured is written; it may be empty.
     ///
     /// # Errors
     /// More or fewer lists than parts; levels that are no meshes, have groups of other names than the part's, or, of a
     /// chunk, do not fit the neighbours ([`Chunk::check`]); more than 4 GiB in all.
-    pub fn write(self, levels: &[Vec<LevelOut<'_>>]) -> Result<Vec<u8>, MeshError> {
+    pub fn write(
+        mut self,
+        levels: &[Vec<LevelOut<'_>>],
+        authored: &[Vec<LevelOut<'_>>],
+    ) -> Result<Vec<u8>, MeshError> {
+        self.tell_authored(authored);
         levels::write(self, levels)
     }
 }

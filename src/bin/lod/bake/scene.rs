@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Mutex;
 
 use anyhow::{Context, anyhow};
-use lod_budget::bake::chain::BakeError;
+use lod_budget::bake::chain::{BakeError, Chain};
 use lod_budget::bake::scene::{Chunks, Options, Part, Scene};
 use lod_budget::bake::{Format, split};
 use lod_budget::files::write_atomically;
@@ -29,7 +29,7 @@ pub struct SceneArgs {
     #[arg(long, conflicts_with = "scene")]
     one_mesh: bool,
     /// Split all meshes of a scene into chunks of so many triangles at most [default: those much larger than their
-    /// neighbours, at 4096]
+    /// neighbours, at 8192]
     #[arg(long, value_name = "TRIANGLES", value_parser = clap::value_parser!(u32).range(1..))]
     split: Option<u32>,
     /// Split no mesh
@@ -80,14 +80,29 @@ pub fn bake(
     let mut row = row(&scene, &file, &rows);
     let levels: Vec<_> =
         outputs.iter().map(|part| part.as_ref().map_or_else(Vec::new, Outputs::levels)).collect();
-    let written = scene.write(&levels).map_err(|e| anyhow!("{e}"))?;
+    let authored = measure_authored(&scene, settings, jobs);
+    let measured: Vec<_> =
+        authored.iter().map(|chain| chain.as_ref().map_or_else(Vec::new, Outputs::levels)).collect();
+    row.measured = authored.iter().flatten().count();
+    let written = scene.write(&levels, &measured).map_err(|e| anyhow!("{e}"))?;
     folder.make()?;
     Record::remove(&folder)?;
     let scene_file = folder.file(&folder.named(".glb"));
     write_atomically(&scene_file, &written)?;
     row.scene_file = scene_file.display().to_string();
+    carry_path(input, &folder)?;
     rows.iter_mut().for_each(|part| part.scene_file = Some(row.scene_file.clone()));
     Ok((row, rows))
+}
+
+/// The camera path that belongs to a scene, the CSV file of its name beside it, goes along.
+fn carry_path(input: &Input, folder: &Folder) -> anyhow::Result<()> {
+    let path = input.file.with_extension("csv");
+    if path.is_file() {
+        let bytes = fs::read(&path).with_context(|| format!("{}: it cannot be read", path.display()))?;
+        write_atomically(&folder.file(&folder.named(".csv")), &bytes)?;
+    }
+    Ok(())
 }
 
 /// A row for each part that could be baked, and for each part what it came to. One without extent gets no levels.
@@ -122,6 +137,15 @@ fn bake_parts(
     Ok((rows, outputs))
 }
 
+/// What the author's chains come to; `None` for those that cannot be measured.
+fn measure_authored(scene: &Scene<'_>, settings: &Settings, jobs: usize) -> Vec<Option<Outputs>> {
+    work::each(scene.authored(), jobs, |_, authored| {
+        let chain = Chain::of_levels(authored.levels.clone(), &settings.plan.measure).ok()?;
+        let table = chain.table(settings.accuracy).ok()?;
+        Some(Outputs { chain, table })
+    })
+}
+
 fn row(scene: &Scene<'_>, file: &str, rows: &[MeshRow]) -> SceneRow {
     let parts = scene.parts();
     SceneRow {
@@ -130,6 +154,7 @@ fn row(scene: &Scene<'_>, file: &str, rows: &[MeshRow]) -> SceneRow {
         chains: rows.iter().filter(|row| row.levels.len() > 1).count(),
         chunks: parts.iter().filter(|part| part.is_chunk).count(),
         nodes: parts.iter().filter(|part| !part.is_chunk).map(|part| part.instances).sum(),
+        measured: 0,
         left: scene.left().iter().map(LeftRow::of).collect(),
         findings: scene.odd().iter().map(|odd| format!("{}: {}", odd.place, odd.finding)).collect(),
     }

@@ -67,6 +67,8 @@ pub struct SceneRow {
     pub chunks: usize,
     /// Nodes that show a part which is no chunk.
     pub nodes: usize,
+    /// Chains of the author's that were measured.
+    pub measured: usize,
     /// What is shown and stays as it was.
     pub left: Vec<LeftRow>,
     /// What was odd about its meshes.

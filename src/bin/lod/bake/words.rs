@@ -101,7 +101,7 @@ fn notes(meshes: &[MeshRow]) -> Vec<String> {
 
 /// What was done to a scene, and what was not.
 fn scene_notes(scene: &SceneRow) -> Vec<String> {
-    let SceneRow { input, chains, chunks, left, findings, .. } = scene;
+    let SceneRow { input, chains, chunks, measured, left, findings, .. } = scene;
     let name = plain(input);
     let mut notes: Vec<String> =
         findings.iter().take(FINDINGS).map(|finding| format!("{name}: {}", plain(finding))).collect();
@@ -113,6 +113,9 @@ fn scene_notes(scene: &SceneRow) -> Vec<String> {
         counted(*chains, "part"),
         counted(*chunks, "chunk")
     ));
+    if *measured > 0 {
+        notes.push(format!("{name}: {} of the author's measured.", counted(*measured, "chain")));
+    }
     notes.extend(
         left.iter()
             .take(FINDINGS)
