@@ -4,7 +4,7 @@
 //! shows its finest level; its `MSFT_lod` names further nodes, placed alike, that show the coarser ones. Those are no
 //! part of the scene, so that a program that does not know the extension draws the finest level alone. The coverage
 //! from which on each level is shown is in `extras.MSFT_screencoverage` of the first node; what was measured is in the
-//! `extras` of a level's mesh: `lod_error`, `lod_hausdorff` and `lod_rms`, in object units.
+//! `extras` of a level's mesh: `lod_error`, `lod_hausdorff` and `lod_rms`, in object units, and `lod_accuracy`.
 //!
 //! Groups of triangles become primitives, each with vertices of its own, a wedge a vertex, and indices of 16 bits where
 //! they will do. A primitive's `extras.name` is its group's name. Materials are names: matt, white, without textures.
@@ -39,9 +39,9 @@
 //! ```
 
 mod attributes;
-mod blob;
+pub(in crate::bake) mod blob;
 mod node;
-mod primitive;
+pub(in crate::bake) mod primitive;
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -152,7 +152,8 @@ impl Glb {
             return Ok(None);
         }
         let mut mesh = object(json!({ "name": name, "primitives": primitives }));
-        mesh.extend(level.measured.map(|measured| ("extras".to_owned(), extras(&measured))));
+        let extras = extras(level);
+        mesh.extend((!extras.is_empty()).then(|| ("extras".to_owned(), Value::Object(extras))));
         self.meshes.push(Value::Object(mesh));
         Ok(Some(self.meshes.len() - 1))
     }
@@ -256,7 +257,8 @@ fn coverages(levels: &[LevelOut<'_>]) -> Result<Vec<f32>, &'static str> {
     Ok(coverage)
 }
 
-fn check(mesh: &Mesh) -> Result<(), String> {
+/// Whether a mesh can be written.
+pub(in crate::bake) fn check(mesh: &Mesh) -> Result<(), String> {
     mesh.check()?;
     let corners = mesh.triangles.as_flattened().iter().map(|&w| mesh.wedges[w as usize]);
     match corners.into_iter().find(|&p| !mesh.positions[p as usize].is_finite()) {
@@ -265,9 +267,13 @@ fn check(mesh: &Mesh) -> Result<(), String> {
     }
 }
 
-fn extras(measured: &Measured) -> Value {
-    let &Measured { error, hausdorff, rms } = measured;
-    json!({ "lod_error": f64::from(error), "lod_hausdorff": hausdorff, "lod_rms": rms })
+/// What is known of a level.
+pub(in crate::bake) fn extras(level: &LevelOut<'_>) -> Map<String, Value> {
+    let measured = level.measured.map_or_else(Map::new, |Measured { error, hausdorff, rms }| {
+        object(json!({ "lod_error": f64::from(error), "lod_hausdorff": hausdorff, "lod_rms": rms }))
+    });
+    let accuracy = level.accuracy.map(|accuracy| ("lod_accuracy".to_owned(), json!(accuracy)));
+    measured.into_iter().chain(accuracy).collect()
 }
 
 /// Matt and white: without a word glTF means bare metal.
