@@ -34,7 +34,8 @@ pub enum Topology {
     /// between held seams.
     #[default]
     Preserved,
-    /// Holes may close, handles and small parts may collapse, edges of more than two triangles may come.
+    /// Holes may close, handles and small parts may collapse, edges of more than two triangles may come, when it is their
+    /// turn: at a price that stands for what the quadrics do not know.
     Free,
 }
 
