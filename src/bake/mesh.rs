@@ -83,6 +83,11 @@ impl Mesh {
         columns.iter().any(|&rows| rows > 0) || !self.uvs.is_empty()
     }
 
+    /// Whether neighbouring triangles can differ in anything but their positions.
+    pub(super) fn has_seams(&self) -> bool {
+        self.has_attributes() || self.groups.len() > 1
+    }
+
     /// The positions of a triangle's corners, as indices.
     pub(super) fn corners(&self, triangle: usize) -> [u32; 3] {
         self.triangles[triangle].map(|wedge| self.wedges[wedge as usize])

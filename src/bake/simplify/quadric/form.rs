@@ -38,6 +38,12 @@ impl Quadric {
         Self { diagonal, mixed: (weight * mixed).to_array(), ..Self::default() }
     }
 
+    /// Some of its bits, for who wants it in the cache.
+    #[inline]
+    pub(super) fn bits(&self) -> u32 {
+        self.constant.to_bits()
+    }
+
     #[inline]
     pub(super) fn form(&self) -> Form {
         Form {
@@ -55,6 +61,14 @@ impl Quadric {
 }
 
 impl Form {
+    /// `weight` times the square of the linear function with that slope, and that value at the origin.
+    #[inline]
+    pub(super) fn square(slope: DVec3, value: f64, weight: f64) -> Self {
+        let along = weight * slope;
+        let mixed = DVec3::new(along.y * slope.z, along.z * slope.x, along.x * slope.y);
+        Self { diagonal: along * slope, mixed, linear: value * along, constant: weight * value * value }
+    }
+
     #[inline]
     pub(super) fn pack(&self) -> Quadric {
         Quadric {

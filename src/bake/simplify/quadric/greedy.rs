@@ -1,11 +1,15 @@
 //! The greedy: contract the edge that costs least, until there are few enough triangles.
 
+use std::hint::black_box;
 use std::ops::ControlFlow;
 
 use glam::{DVec3, Vec3};
 
 use super::form::{Form, Quadric};
-use super::guard::Guard;
+use super::guard::{Facing, Guard};
+use super::layer::{Around, Move};
+use super::layers::Layers;
+use super::pairs::Pairs;
 use super::placement::Spot;
 use super::{GarlandHeckbert, Topology};
 use crate::bake::simplify::fans::Fans;
@@ -13,7 +17,7 @@ use crate::bake::simplify::link::{Complex, Stamps, others};
 use crate::bake::simplify::order::{along_curve, by_lowest_corner};
 use crate::bake::simplify::queue::Queue;
 use crate::bake::simplify::rebuild::{Corner, Facet, Rebuilt};
-use crate::bake::simplify::{Progress, Simplified, Stopped, Task};
+use crate::bake::simplify::{Progress, Simplified, Stopped, Target, Task};
 use crate::bounds::Aabb;
 
 /// How much the squared length of an edge adds to its cost, compared with its squared error: enough to order what is
@@ -49,8 +53,10 @@ mod mark {
     pub const BORDER: u8 = 16;
     /// It is on an edge that does not have as many triangles in either direction.
     pub const ODD: u8 = 32;
+    /// It is on a seam that is held.
+    pub const SEAM: u8 = 128;
     /// What a vertex has from those that are contracted into it.
-    pub const INHERITED: u8 = LOCKED | BORDER | ODD;
+    pub const INHERITED: u8 = LOCKED | BORDER | ODD | SEAM;
 }
 
 /// A contraction of a vertex, with one of higher index: the bits of its cost, then the partner, so that whole numbers
@@ -95,7 +101,13 @@ pub(super) struct Greedy<'a> {
     triangles: Vec<[u32; 3]>,
     /// Per triangle, the old one that it was.
     old_triangles: Vec<u32>,
+    /// Per triangle, where it faced before all contractions.
+    facings: Vec<Facing>,
     fans: Fans,
+    /// What may be contracted besides edges, if anything.
+    pairs: Option<Pairs>,
+    /// The attributes, if there are any.
+    layers: Option<Layers<'a>>,
     marks: Vec<u8>,
     choices: Vec<Choice>,
     queue: Queue,
@@ -109,6 +121,8 @@ pub(super) struct Greedy<'a> {
     /// How many triangles there were, and are.
     from: usize,
     live: usize,
+    /// The largest error that a step may have by now, in object units; negative before the first run.
+    most: f32,
     /// Largest squared error so far, scaled.
     error: f64,
     /// The fan of a contracted vertex, in the making.
@@ -124,19 +138,25 @@ impl<'a> Greedy<'a> {
         let count = origins.len();
         let positions: Vec<Vec3> = origins.iter().map(|&v| task.mesh.positions[v as usize]).collect();
         let lock = |&v: &u32| if task.is_locked(v as usize) { mark::LOCKED } else { 0 };
+        let scale = scale_of(&positions);
+        let layers =
+            task.mesh.has_seams().then(|| Layers::new(task.mesh, &old_triangles, &method.attributes, scale));
         let mut greedy = Self {
             method,
             task,
             guard: Guard::new(method.least_turn, method.least_shape),
-            scale: scale_of(&positions),
+            scale,
             positions,
             quadrics: vec![Quadric::default(); count],
             areas: vec![0.0; count],
             fans: Fans::new(count, &triangles),
             from: triangles.len(),
             live: triangles.len(),
+            facings: vec![Facing::default(); triangles.len()],
             triangles,
             old_triangles,
+            pairs: None,
+            layers,
             marks: origins.iter().map(lock).collect(),
             choices: vec![Choice::default(); count],
             queue: Queue::new(),
@@ -144,13 +164,23 @@ impl<'a> Greedy<'a> {
             order: origins.clone(),
             origins,
             heirs: (0..count as u32).collect(),
+            most: -1.0,
             error: 0.0,
             fan: Vec::new(),
             partners: Vec::new(),
         };
         greedy.sum_up(&weights);
-        greedy.sweep();
+        greedy.find_pairs();
         greedy
+    }
+
+    /// Finds what may be contracted besides edges.
+    fn find_pairs(&mut self) {
+        let distance = f64::from(self.method.pairs);
+        if self.method.topology == Topology::Free && distance > 0.0 {
+            let complex = Complex { triangles: &self.triangles, fans: &self.fans };
+            self.pairs = Some(Pairs::find(&self.positions, complex, distance));
+        }
     }
 
     #[inline]
@@ -167,6 +197,7 @@ impl<'a> Greedy<'a> {
             let normal = across.normalize_or_zero();
             let area = 0.5 * weight * across.length();
             let plane = Quadric::plane(normal, area);
+            self.facings[t] = Facing::new(normal);
             for corner in corners {
                 self.quadrics[corner as usize].add(&plane);
                 self.areas[corner as usize] += area as f32;
@@ -176,6 +207,41 @@ impl<'a> Greedy<'a> {
         for vertex in 0..self.positions.len() as u32 {
             self.find_borders(vertex, weights, &mut uses);
         }
+        if let Some(mut layers) = self.layers.take() {
+            let places: Vec<DVec3> = (0..self.positions.len() as u32).map(|v| self.place(v)).collect();
+            layers.sum_up(&self.triangles, &places, weights);
+            self.hold_seams(&layers, weights);
+            self.layers = Some(layers);
+        }
+    }
+
+    /// Marks the vertices of seams, and holds them to the planes that stand upright on the triangles at either side.
+    fn hold_seams(&mut self, layers: &Layers, weights: &[f64]) {
+        for triangle in (0..self.triangles.len()).filter(|_| layers.holds_seams()) {
+            let [a, b, c] = self.triangles[triangle];
+            for edge in [[a, b], [b, c], [c, a]] {
+                if self.is_seam(layers, edge) {
+                    for [vertex, neighbour] in [edge, [edge[1], edge[0]]] {
+                        self.marks[vertex as usize] |= mark::SEAM;
+                        let weight = weights[triangle] * f64::from(self.method.seam);
+                        self.hold_to_edge(vertex, neighbour, triangle, weight);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether an edge is a seam that is held. One that has not two triangles is a border.
+    fn is_seam(&self, layers: &Layers, edge: [u32; 2]) -> bool {
+        let mut sides = self.around().edge(edge[0], edge[1]);
+        match (sides.next(), sides.next(), sides.next()) {
+            (Some(s), Some(t), None) => layers.is_seam(self.around(), edge, [s, t]),
+            _ => false,
+        }
+    }
+
+    fn around(&self) -> Around<'_> {
+        Around { triangles: &self.triangles, fans: &self.fans }
     }
 
     /// Marks a vertex that has borders, and holds it to them. `uses` is 0 everywhere, and has room for counts: per
@@ -196,7 +262,8 @@ impl<'a> Greedy<'a> {
                     self.marks[vertex as usize] |= if to + from != 2 { mark::BORDER } else { 0 };
                 }
                 if to + from != 2 {
-                    self.hold_border(vertex, neighbour, triangle, weights[triangle]);
+                    let weight = weights[triangle] * f64::from(self.method.border);
+                    self.hold_to_edge(vertex, neighbour, triangle, weight);
                 }
             }
         }
@@ -207,12 +274,12 @@ impl<'a> Greedy<'a> {
         }
     }
 
-    /// Holds one end of a border of a triangle to the plane through it that stands upright on the triangle.
-    fn hold_border(&mut self, vertex: u32, neighbour: u32, triangle: usize, weight: f64) {
+    /// Holds one end of an edge of a triangle to the plane through it that stands upright on the triangle.
+    fn hold_to_edge(&mut self, vertex: u32, neighbour: u32, triangle: usize, weight: f64) {
         let [a, b, c] = self.triangles[triangle].map(|v| self.place(v));
         let edge = self.place(neighbour) - self.place(vertex);
         let upright = (b - a).cross(c - a).cross(edge).normalize_or_zero();
-        let plane = Quadric::plane(upright, weight * f64::from(self.method.border) * edge.length_squared());
+        let plane = Quadric::plane(upright, weight * edge.length_squared());
         self.quadrics[vertex as usize].add(&plane);
     }
 
@@ -227,8 +294,17 @@ impl<'a> Greedy<'a> {
     }
 
     /// Contracts until there are few enough triangles.
-    pub(super) fn run(&mut self, progress: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Stopped {
-        let target = self.task.target.triangles;
+    pub(super) fn run(
+        &mut self,
+        target: Target,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Stopped {
+        // What was too dear before may not be now.
+        if target.error > self.most {
+            self.sweep();
+        }
+        self.most = target.error;
+        let target = target.triangles;
         let mut since_sweep = 0;
         let mut present = 0;
         for look in 1.. {
@@ -239,6 +315,7 @@ impl<'a> Greedy<'a> {
             if look % STRIDE == 0 && progress(so_far).is_break() {
                 return Stopped::Cancelled;
             }
+            self.read_ahead();
             match self.queue.pop() {
                 Some((_, vertex)) => since_sweep += usize::from(self.look_at(vertex)),
                 None if since_sweep * WORTH_A_SWEEP > present => {
@@ -249,6 +326,28 @@ impl<'a> Greedy<'a> {
             }
         }
         Stopped::Exhausted
+    }
+
+    /// Reads what the next looks will need, so that it is in the cache when their turn comes: they are all over the
+    /// mesh, and simplification waits for memory more than for anything else. What is found by what was read has to
+    /// wait for the next stage.
+    #[inline]
+    fn read_ahead(&self) {
+        let Some([far, near, next]) = self.queue.ahead([14, 10, 6]) else { return };
+        let partner = |vertex: u32| self.choices[vertex as usize].partner();
+        let any_triangle = |vertex| self.fans.of(vertex).first().map_or(0, |&t| t);
+        let corner = |&t: &u32| self.triangles[t as usize][0];
+        let bits = self.read(far) ^ partner(far) ^ any_triangle(near) ^ self.read(partner(near));
+        let corners = self.fans.of(next).iter().fold(0, |bits, t| bits ^ corner(t));
+        black_box(bits ^ any_triangle(partner(next)) ^ corners);
+    }
+
+    /// Some bits of all that is kept of a vertex itself.
+    #[inline]
+    fn read(&self, vertex: u32) -> u32 {
+        let at = vertex as usize;
+        let marks = u32::from(self.marks[at]) ^ self.fans.of(vertex).len() as u32;
+        marks ^ self.positions[at].x.to_bits() ^ self.quadrics[at].bits()
     }
 
     /// Contracts the choice of a vertex if it still stands and may be; returns whether it did.
@@ -276,8 +375,8 @@ impl<'a> Greedy<'a> {
     /// What contracting two vertices means.
     fn step(&self, kept: u32, gone: u32) -> Step {
         let edge = self.place(gone) - self.place(kept);
-        let sum = self.sum(kept, gone, edge);
-        let spot = self.spot(kept, gone, edge, &sum);
+        let shape = self.shape(kept, gone, edge);
+        let spot = self.spot(kept, gone, edge, &(shape + self.looks(kept, gone, edge)));
         let area = f64::from(self.areas[kept as usize] + self.areas[gone as usize]);
         let position = if spot.place == DVec3::ZERO {
             self.positions[kept as usize]
@@ -287,14 +386,35 @@ impl<'a> Greedy<'a> {
             ((self.place(kept) + spot.place) / self.scale).as_vec3()
         };
         let moved = position.as_dvec3() * self.scale - self.place(kept);
-        let error = if area > 0.0 { spot.error / area } else { 0.0 };
-        Step { kept, gone, position, quadric: sum.seen_from(moved).pack(), error }
+        let error = if area > 0.0 { shape.at(spot.place).max(0.0) / area } else { 0.0 };
+        let way = Move {
+            kept,
+            gone,
+            edge,
+            to: if position == self.positions[gone as usize] { edge } else { moved },
+        };
+        Step { way, position, quadric: shape.seen_from(moved).pack(), error }
     }
 
     /// The error of both ends of an edge, seen from the first.
     #[inline]
     fn sum(&self, a: u32, b: u32, edge: DVec3) -> Form {
+        match self.layers {
+            None => self.shape(a, b, edge),
+            Some(_) => self.shape(a, b, edge) + self.looks(a, b, edge),
+        }
+    }
+
+    /// The part of the error that is distance.
+    #[inline]
+    fn shape(&self, a: u32, b: u32, edge: DVec3) -> Form {
         self.quadrics[a as usize].form() + self.quadrics[b as usize].form().seen_from(-edge)
+    }
+
+    /// The part of the error that is attributes.
+    fn looks(&self, a: u32, b: u32, edge: DVec3) -> Form {
+        let error = |layers: &Layers| layers.error(self.around(), a, b, edge);
+        self.layers.as_ref().map_or(Form::default(), error)
     }
 
     /// Where the contraction of two vertices goes, seen from the first.
@@ -332,7 +452,7 @@ impl<'a> Greedy<'a> {
     /// Where every edge has as many triangles in either direction it is enough to look at one corner of each.
     fn cheapest(&mut self, vertex: u32, from: Choice) -> Choice {
         let fan = self.fans.of(vertex);
-        if fan.len() > LARGEST_FAN {
+        if fan.is_empty() || fan.len() > LARGEST_FAN {
             return Choice::NONE;
         }
         let is_odd = self.marks[vertex as usize] & mark::ODD != 0;
@@ -344,6 +464,12 @@ impl<'a> Greedy<'a> {
         } else {
             partners.extend(sides.map(|[p, _]| p).filter(|&p| p > vertex));
         }
+        if let Some(pairs) = &self.pairs {
+            let is_left = |p: &&u32| **p > vertex && !self.fans.of(**p).is_empty();
+            partners.extend(pairs.of(vertex).iter().filter(is_left));
+        }
+        // All are read before any is needed: one wait instead of one for each.
+        black_box(partners.iter().fold(0, |bits, &p| bits ^ self.quadrics[p as usize].bits()));
         let mut cheapest = Choice::NONE;
         for &partner in &partners {
             let choice = Choice::new(self.cost(vertex, partner), partner);
@@ -364,7 +490,7 @@ impl<'a> Greedy<'a> {
 
     /// Whether a step is allowed.
     fn may_contract(&mut self, step: &Step) -> bool {
-        let &Step { kept, gone, position, error, .. } = step;
+        let &Step { way: Move { kept, gone, .. }, position, error, .. } = step;
         let to = position.as_dvec3() * self.scale;
         let both = self.marks[kept as usize] & self.marks[gone as usize];
         let keeps_topology = |stamps: &mut Stamps| {
@@ -372,11 +498,20 @@ impl<'a> Greedy<'a> {
             complex.may_contract(kept, gone, both & mark::BORDER != 0, stamps)
         };
         both & mark::LOCKED == 0
-            && self.in_units(error) <= self.task.target.error
+            && self.in_units(error) <= self.most
+            && !self.fans.of(gone).is_empty()
             && self.fans.of(kept).len() + self.fans.of(gone).len() <= LARGEST_FAN
             && self.guard_allows(kept, gone, to)
             && self.guard_allows(gone, kept, to)
-            && (self.method.topology == Topology::Free || keeps_topology(&mut self.stamps))
+            && (self.method.topology == Topology::Free
+                || keeps_topology(&mut self.stamps) && self.keeps_charts(kept, gone))
+    }
+
+    /// Whether what is between seams stays whole: two vertices on seams may become one only along a seam.
+    fn keeps_charts(&self, kept: u32, gone: u32) -> bool {
+        let both = self.marks[kept as usize] & self.marks[gone as usize];
+        let is_seam = |layers| both & mark::BORDER != 0 || self.is_seam(layers, [kept, gone]);
+        both & mark::SEAM == 0 || self.layers.as_ref().is_none_or(is_seam)
     }
 
     /// The distance, in object units, of a squared one between places.
@@ -389,13 +524,18 @@ impl<'a> Greedy<'a> {
         let from = self.place(vertex);
         self.fans.of(vertex).iter().all(|&t| {
             let [p, q] = others(self.triangles[t as usize], vertex);
-            p == other || q == other || self.guard.allows(from, to, self.place(p), self.place(q))
+            let side = || [self.place(p), self.place(q)];
+            p == other || q == other || self.guard.allows(from, to, side(), self.facings[t as usize])
         })
     }
 
     /// Contracts `gone` into `kept`.
     fn contract(&mut self, step: &Step) {
-        let (kept, gone) = (step.kept as usize, step.gone as usize);
+        let Move { kept: heir, gone: parted, .. } = step.way;
+        let (kept, gone) = (heir as usize, parted as usize);
+        if let Some(layers) = &mut self.layers {
+            layers.contract(Around { triangles: &self.triangles, fans: &self.fans }, &step.way);
+        }
         if step.position == self.positions[gone] {
             self.origins[kept] = self.origins[gone];
         }
@@ -403,11 +543,12 @@ impl<'a> Greedy<'a> {
         self.quadrics[kept] = step.quadric;
         self.areas[kept] += self.areas[gone];
         self.error = self.error.max(step.error);
-        self.heirs[gone] = step.kept;
+        self.heirs[gone] = heir;
         self.marks[kept] |= self.marks[gone] & mark::INHERITED;
-        self.merge_fans(step.kept, step.gone);
+        self.merge_fans(heir, parted);
+        self.merge_pairs(heir, parted);
         self.marks[gone] = mark::GONE;
-        self.choose(step.kept, None);
+        self.choose(heir, None);
     }
 
     /// Gives `kept` the triangles of both but for those at the edge, which go.
@@ -429,6 +570,18 @@ impl<'a> Greedy<'a> {
         self.fans.replace(gone, &[]);
         self.fans.replace(kept, &fan);
         self.fan = fan;
+    }
+
+    /// Gives `kept` the pairs of both.
+    fn merge_pairs(&mut self, kept: u32, gone: u32) {
+        let Some(mut pairs) = self.pairs.take() else { return };
+        for &partner in pairs.of(kept).iter().chain(pairs.of(gone)) {
+            if partner != kept && partner != gone {
+                self.disturb(partner, kept, gone);
+            }
+        }
+        pairs.contract(kept, gone);
+        self.pairs = Some(pairs);
     }
 
     /// Whether a triangle of `kept` stays one.
@@ -471,31 +624,56 @@ impl<'a> Greedy<'a> {
         }
     }
 
-    /// What is left.
-    pub(super) fn finish(self, stopped: Stopped) -> Simplified {
-        let facets = (0..self.triangles.len()).filter(|&t| self.triangles[t] != GONE).map(|t| self.facet(t));
-        let Rebuilt { mesh, vertices, wedges, position_of } =
-            Rebuilt::new(self.task.mesh, &self.positions, facets.collect());
+    /// What is left by now.
+    pub(super) fn finish(&self, stopped: Stopped) -> Simplified {
+        let left: Vec<usize> = (0..self.triangles.len()).filter(|&t| self.triangles[t] != GONE).collect();
+        let wedges = self.wedges(&left);
+        let facet = |(&t, wedges): (&usize, &[u32; 3])| self.facet(t, wedges);
+        let facets: Vec<Facet> = left.iter().zip(&wedges).map(facet).collect();
+        let mut rebuilt = Rebuilt::new(self.task.mesh, &self.positions, facets);
+        if let Some(layers) = &self.layers {
+            layers.write(&self.corners(&left, &wedges, &rebuilt.wedges), &mut rebuilt.mesh);
+        }
+        let Rebuilt { mesh, vertices, wedges: wedge_origins, position_of } = rebuilt;
         let origins = vertices.iter().map(|&v| self.origins[v as usize]).collect();
-        let error = self.in_units(self.error);
         let heirs = self.old_heirs(&position_of);
-        Simplified { mesh, origins, wedge_origins: wedges, heirs, error, stopped }
+        Simplified { mesh, origins, wedge_origins, heirs, error: self.in_units(self.error), stopped }
     }
 
-    fn facet(&self, triangle: usize) -> Facet {
-        let old = self.old_triangles[triangle];
-        let (vertices, wedges) = (self.triangles[triangle], self.task.mesh.triangles[old as usize]);
+    /// Per triangle that is left, the old wedges whose attributes its corners have.
+    fn wedges(&self, left: &[usize]) -> Vec<[u32; 3]> {
+        let old = |&t: &usize| self.task.mesh.triangles[self.old_triangles[t] as usize];
+        match &self.layers {
+            Some(layers) => layers.looks(self.around(), left, &self.origins),
+            None => left.iter().map(old).collect(),
+        }
+    }
+
+    /// Per old wedge of a list, a triangle that is left and a corner of it that stands for it.
+    fn corners(&self, left: &[usize], wedges: &[[u32; 3]], of: &[u32]) -> Vec<(usize, usize)> {
+        let mut corner_of = vec![(0, 0); self.task.mesh.wedges.len()];
+        for (&triangle, wedges) in left.iter().zip(wedges) {
+            for (corner, &wedge) in wedges.iter().enumerate() {
+                corner_of[wedge as usize] = (triangle, corner);
+            }
+        }
+        of.iter().map(|&wedge| corner_of[wedge as usize]).collect()
+    }
+
+    fn facet(&self, triangle: usize, wedges: &[u32; 3]) -> Facet {
+        let vertices = self.triangles[triangle];
         let corner = |i| Corner { vertex: vertices[i], wedge: wedges[i] };
-        Facet { old, corners: [corner(0), corner(1), corner(2)] }
+        Facet { old: self.old_triangles[triangle], corners: [corner(0), corner(1), corner(2)] }
     }
 
     /// Per old vertex, the new index of its last heir.
-    fn old_heirs(mut self, new: &[u32]) -> Vec<u32> {
+    fn old_heirs(&self, new: &[u32]) -> Vec<u32> {
         let mut heirs = vec![Simplified::GONE; self.task.mesh.positions.len()];
-        for (vertex, old) in self.order.into_iter().enumerate() {
+        let mut last = self.heirs.clone();
+        for (vertex, &old) in self.order.iter().enumerate() {
             // An heir is lower, so its own is known already.
-            self.heirs[vertex] = self.heirs[self.heirs[vertex] as usize];
-            heirs[old as usize] = new[self.heirs[vertex] as usize];
+            last[vertex] = last[last[vertex] as usize];
+            heirs[old as usize] = new[last[vertex] as usize];
         }
         heirs
     }
@@ -503,9 +681,8 @@ impl<'a> Greedy<'a> {
 
 /// What contracting two vertices means.
 struct Step {
-    kept: u32,
-    gone: u32,
-    /// Where they go, in object units, and the error that is seen from there.
+    way: Move,
+    /// Where they go, in object units, and the error of the shape that is seen from there.
     position: Vec3,
     quadric: Quadric,
     /// Mean squared distance to the planes contracted so far, scaled.

@@ -2,7 +2,8 @@
 //!
 //! M. Garland, P. Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH 1997. The error of a vertex
 //! is the sum of squared distances to the planes of the triangles that were contracted into it, weighted by their
-//! areas; the edge whose contraction costs least goes first. Where we depart from the paper:
+//! areas; the edge whose contraction costs least goes first. Attributes add to the error as in `layer.rs`. Where we
+//! depart from the paper:
 //! - the best place is held near the middle of the edge by a weak spring, so that flat and straight parts are no
 //!   special case (see [`Placement::Optimal`]);
 //! - among contractions that cost next to nothing the shorter edge goes first, so that flat parts keep good triangles;
@@ -13,19 +14,24 @@
 mod form;
 mod greedy;
 mod guard;
+mod layer;
+mod layers;
+mod pairs;
 mod placement;
 
+pub use layers::Attributes;
 pub use placement::Placement;
 
 use std::ops::ControlFlow;
 
-use super::{Progress, Simplified, Simplifier, SimplifyError, Task};
+use super::{Progress, Simplified, Simplifier, SimplifyError, Stopped, Target, Task};
 use greedy::Greedy;
 
 /// Whether contractions may change the topology.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Topology {
-    /// Closed stays closed, manifold stays manifold, and no hole, handle or part appears or goes.
+    /// Closed stays closed, manifold stays manifold, and no hole, handle or part appears or goes. Nor does what is
+    /// between held seams.
     #[default]
     Preserved,
     /// Holes may close, handles and small parts may collapse, edges of more than two triangles may come.
@@ -41,9 +47,19 @@ pub struct GarlandHeckbert {
     pub placement: Placement,
     /// Whether holes may close, and the like.
     pub topology: Topology,
+    /// Vertices that are closer than this in the original mesh, in object units, may be contracted without an edge
+    /// between them, which lets parts grow together; 0 for edges alone. Needs [`Topology::Free`], without which it does
+    /// nothing. A vertex is paired with the eight nearest of those that share no triangle with it, and with any for which
+    /// it is among their eight.
+    pub pairs: f32,
     /// How much moving away from a border counts, compared with moving away from the surface, ≥ 0. Edges of more than
     /// two triangles count as borders.
     pub border: f32,
+    /// How much attributes count.
+    pub attributes: Attributes,
+    /// How much moving away from a seam counts, compared with moving away from the surface, ≥ 0: where materials,
+    /// textures or colours meet. Where attributes are ignored seams are too.
+    pub seam: f32,
     /// Least cosine of the angle by which one contraction may turn a triangle, in [0, 1].
     pub least_turn: f32,
     /// Least shape of a triangle that had a better one: 1 is equilateral, 0 has no area.
@@ -55,7 +71,10 @@ impl Default for GarlandHeckbert {
         Self {
             placement: Placement::Optimal,
             topology: Topology::Preserved,
+            pairs: 0.0,
             border: 10.0,
+            attributes: Attributes::default(),
+            seam: 1.0,
             least_turn: 0.2,
             least_shape: 0.02,
         }
@@ -70,7 +89,32 @@ impl Simplifier for GarlandHeckbert {
     ) -> Result<Simplified, SimplifyError> {
         task.check()?;
         let mut greedy = Greedy::new(self, task);
-        let stopped = greedy.run(progress);
+        let stopped = greedy.run(task.target, progress);
         Ok(greedy.finish(stopped))
+    }
+
+    /// Every level goes on from the one before, unless its target is finer: a whole chain costs as much as its last level.
+    fn chain(
+        &self,
+        task: &Task,
+        targets: &[Target],
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Vec<Simplified>, SimplifyError> {
+        task.check()?;
+        let mut greedy = Greedy::new(self, task);
+        let mut chain = Vec::with_capacity(targets.len());
+        let mut last = Target { triangles: usize::MAX, error: 0.0 };
+        for &target in targets {
+            if target.triangles > last.triangles || target.error < last.error {
+                greedy = Greedy::new(self, task);
+            }
+            let stopped = greedy.run(target, progress);
+            chain.push(greedy.finish(stopped));
+            if stopped == Stopped::Cancelled {
+                break;
+            }
+            last = target;
+        }
+        Ok(chain)
     }
 }
