@@ -113,7 +113,10 @@ proptest! {
     /// Nothing is made up: what a wedge looks like, some wedge looked like before, in the same material. Only edge
     /// contraction works attributes out.
     #[test]
-    fn attributes_and_groups_are_those_that_were_there(side in 3..12u32, share in 0.1..1.0f64, method in prop::sample::select(&Method::ALL[1..])) {
+    fn attributes_and_groups_are_those_that_were_there(
+        (side, share) in (3..12u32, 0.1..1.0f64),
+        method in prop::sample::select(&Method::ALL[1..]),
+    ) {
         let mesh = patchwork(side);
         let task = Task::new(&mesh, Target::triangles((share * mesh.triangles.len() as f64) as usize));
         let result = simplify(method, &task);
