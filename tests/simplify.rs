@@ -4,10 +4,10 @@
 
 mod simplified;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use lod_budget::bake::shapes::{icosphere, terrain, torus, torus_knot};
 use lod_budget::bake::simplify::{
     GarlandHeckbert, Placement, Simplified, Simplifier, SimplifyError, Stopped, Target, Task, Topology,
@@ -15,6 +15,7 @@ use lod_budget::bake::simplify::{
 };
 use lod_budget::bake::{Mesh, Surface};
 use proptest::prelude::*;
+use simplified::{borders, center, check, closed, euler, is_manifold, normal, perturb};
 
 const PLACEMENTS: [Placement; 4] =
     [Placement::Optimal, Placement::Endpoint, Placement::Midpoint, Placement::Average];

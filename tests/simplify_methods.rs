@@ -110,9 +110,13 @@ proptest! {
         prop_assert_eq!(small.error * scale, large.error);
     }
 
-    /// Nothing is made up: what a wedge looks like, some wedge looked like before, in the same material.
+    /// Nothing is made up: what a wedge looks like, some wedge looked like before, in the same material. Only edge
+    /// contraction works attributes out.
     #[test]
-    fn attributes_and_groups_are_those_that_were_there(side in 3..12u32, share in 0.1..1.0f64, method in method()) {
+    fn attributes_and_groups_are_those_that_were_there(
+        (side, share) in (3..12u32, 0.1..1.0f64),
+        method in prop::sample::select(&Method::ALL[1..]),
+    ) {
         let mesh = patchwork(side);
         let task = Task::new(&mesh, Target::triangles((share * mesh.triangles.len() as f64) as usize));
         let result = simplify(method, &task);

@@ -9,7 +9,7 @@ use lod_budget::bake::{Mesh, Surface};
 use proptest::prelude::*;
 
 /// How many triangles go along each directed edge.
-pub fn edges(surface: &Surface) -> BTreeMap<(u32, u32), usize> {
+fn edges(surface: &Surface) -> BTreeMap<(u32, u32), usize> {
     let mut edges = BTreeMap::new();
     for &[a, b, c] in &surface.triangles {
         for edge in [(a, b), (b, c), (c, a)] {

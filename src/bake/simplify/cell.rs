@@ -1,9 +1,9 @@
 //! Cell collapse: the cells of an octree become points, one after another, in the order of their error.
 //!
-//! D. Luebke and others, "Level of Detail for 3D Graphics", 2003, chapter 2, names the operation; D. Luebke, C. Erikson,
-//! "View-dependent simplification of arbitrary polygonal environments", 1997, collapses the octree's cells bottom-up.
-//! All vertices of a cell become one, connected or not; a cell's turn can come once those within it have collapsed.
-//! What is ours:
+//! D. Luebke and others, "Level of Detail for 3D Graphics", 2003, chapter 2, names the operation; D. Luebke, C.
+//! Erikson, "View-dependent simplification of arbitrary polygonal environments", 1997, collapses the octree's cells
+//! bottom-up. All vertices of a cell become one, connected or not; a cell's turn can come once those within it have
+//! collapsed. What is ours:
 //! - the order is that of the quadric error of the cell's vertex, no less than that of the cells within;
 //! - triangles may turn over: cells that would make them do so were held back at first, and the rest got worse by more.
 

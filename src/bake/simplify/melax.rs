@@ -1,9 +1,9 @@
 //! Half-edge collapses in the order of length times bend.
 //!
 //! S. Melax, "A simple, fast, and effective polygon reduction algorithm", Game Developer, 1998. A vertex u moves onto a
-//! neighbour v at the cost |u − v| · max over f of min over n of (1 − f·n) / 2, where f are the normals of the triangles
-//! of u and n those of its triangles that have v as well: how far u goes, times how sharply the surface bends away from
-//! where it goes. Where we depart from the article:
+//! neighbour v at the cost |u − v| · max over f of min over n of (1 − f·n) / 2, where f are the normals of the
+//! triangles of u and n those of its triangles that have v as well: how far u goes, times how sharply the surface
+//! bends away from where it goes. Where we depart from the article:
 //! - borders and seams are lines with a bend of their own, and leaving them counts as the sharpest bend;
 //! - triangles without area have no normal, and are left out of the formula;
 //! - a collapse that would change the topology, or turn a triangle over, is refused, and the next best taken.

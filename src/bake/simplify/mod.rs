@@ -3,10 +3,10 @@
 //! | method | what it does | take it for |
 //! |---|---|---|
 //! | [`GarlandHeckbert`] | contracts edges in the order of their quadric error | nearly everything |
-//! | [`Melax`] | moves vertices onto neighbours by length times bend | moderate steps that keep old vertices, attributes and all |
+//! | [`Melax`] | moves vertices onto neighbours by length times bend | a half or a quarter of the triangles, on old vertices |
 //! | [`Cluster`] | joins the vertices of each cell of a grid | speed, whatever the input; far vistas |
-//! | [`AdaptiveCluster`] | joins connected vertices of octree cells, as large as the error allows | speed with seams, thin parts and joints kept |
-//! | [`Decimate`] | takes vertices out and fills the holes | scans and isosurfaces whose vertices must stay where they are |
+//! | [`AdaptiveCluster`] | joins connected vertices of octree cells, as large as the error allows | speed, with seams, thin parts and joints kept |
+//! | [`Decimate`] | takes vertices out and fills the holes | scans and isosurfaces, on old vertices |
 //! | [`TriangleCollapse`] | contracts triangles in the order of their quadric error | even meshes, few and large steps |
 //! | [`CellCollapse`] | joins the vertices of octree cells one cell after another | crowds of small parts: rubble, foliage |
 //!

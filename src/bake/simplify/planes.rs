@@ -13,7 +13,8 @@ const BORDER: f64 = 10.0;
 /// A weighted sum of squared distances to planes: `vᵀAv + 2bᵀv + c` (M. Garland, P. Heckbert, "Surface simplification
 /// using quadric error metrics", 1997), and the weight of the surface that they are of.
 ///
-/// In double precision throughout and seen from one origin for all, which is good to about 1e-8 of the distance from it.
+/// In double precision throughout and seen from one origin for all, which is good to about 1e-8 of the distance from
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Planes {
     square: DMat3,

@@ -3,8 +3,8 @@
 //! A triangle becomes a point, and with it the three at its sides go: B. Hamann, "A data reduction scheme for
 //! triangulated surfaces", 1994; T. Gieng, B. Hamann, K. Joy, G. Schussman, I. Trotts, "Smooth hierarchical surface
 //! triangulations", 1997. Where we depart from the papers:
-//! - triangles go in the order of their quadric error (M. Garland, P. Heckbert, 1997), not of the curvature of a surface
-//!   fitted to their corners; the point is where that error is least;
+//! - triangles go in the order of their quadric error (M. Garland, P. Heckbert, 1997), not of the curvature of a
+//!   surface fitted to their corners; the point is where that error is least;
 //! - borders are held by planes that stand upright on them;
 //! - a contraction that would change the topology or turn a triangle over is refused.
 
@@ -18,8 +18,8 @@ use super::star::Star;
 use super::workpiece::{GONE, Workpiece};
 use super::{Progress, Simplified, Simplifier, SimplifyError, Task, Topology};
 
-/// Triangle contraction by quadric error: four triangles a step, so some steps are bound to be worse than those of edges.
-/// Take it for even meshes and to compare.
+/// Triangle contraction by quadric error: four triangles a step, so some steps are bound to be worse than those of
+/// edges. Take it for even meshes and to compare.
 ///
 /// The target of triangles is met, or missed by up to three too few.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,8 @@
 //! Clusters of an octree, as fine as the surface needs.
 //!
-//! After A. Willmott, "Rapid simplification of multi-attribute meshes", High Performance Graphics 2011, whose aims these
-//! are: clusters that keep thin parts, seams of attributes and what moves with different joints. The means are our own:
+//! After A. Willmott, "Rapid simplification of multi-attribute meshes", High Performance Graphics 2011, whose aims
+//! these are: clusters that keep thin parts, seams of attributes and what moves with different joints. The means are
+//! our own:
 //! - cells are as large as the quadric error of their vertex allows, as in E. Shaffer, M. Garland, "Efficient adaptive
 //!   simplification of massive meshes", 2001, instead of all alike;
 //! - only vertices that edges connect within the cell are joined, so that the two sides of a thin wall, and parts that
@@ -15,9 +16,9 @@ use super::cloud::{Cloud, Clusters};
 use super::octree::Octree;
 use crate::bake::simplify::{Progress, Simplified, Simplifier, SimplifyError, Task};
 
-/// The connected vertices of an octree's cell become one, small cells where the surface is curved and large ones where it
-/// is flat: in two or three times the time of a uniform grid, at half its error where curvature varies. Keeps seams,
-/// thin parts and joints apart.
+/// The connected vertices of an octree's cell become one, small cells where the surface is curved and large ones
+/// where it is flat: in two or three times the time of a uniform grid, at half its error where curvature varies.
+/// Keeps seams, thin parts and joints apart.
 ///
 /// A target of triangles is met to within those that one cell takes with it. Weights make cells smaller; they have no
 /// part in the error.

@@ -29,8 +29,8 @@ const MOST_EDGES: usize = 64;
 /// error of others. Joins what is close, so parts, holes and thin walls may go.
 ///
 /// A target of triangles is met by the finest grid that has no more than those: within a few percent where there are
-/// thousands, and up to a half below where there are tens. An error is the largest diagonal of a cell, and bounds how far
-/// a vertex moves. Weights count in where the vertex of a cell is, not in how large cells are.
+/// thousands, and up to a half below where there are tens. An error is the largest diagonal of a cell, and bounds how
+/// far a vertex moves. Weights count in where the vertex of a cell is, not in how large cells are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cluster {
     /// Where the vertex of a cell is.
@@ -72,8 +72,8 @@ struct Grid<'a> {
 }
 
 impl Grid<'_> {
-    /// The finest grid that meets the target of triangles, or else the coarsest that the error allows; `None` where that
-    /// is finer than any grid. Doubles, then halves the interval: some 2 log n looks at all triangles.
+    /// The finest grid that meets the target of triangles, or else the coarsest that the error allows; `None` where
+    /// that is finer than any grid. Doubles, then halves the interval: some 2 log n looks at all triangles.
     fn search(&self, progress: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> ControlFlow<(), Option<u64>> {
         let target = self.cloud.task.target.triangles;
         let Some(coarsest) = self.coarsest().filter(|_| self.cloud.triangles.len() > target) else {

@@ -1,9 +1,9 @@
 //! Vertex decimation: a vertex goes with the triangles around it, and the hole is triangulated anew.
 //!
-//! W. Schroeder, J. Zarge, W. Lorensen, "Decimation of triangle meshes", SIGGRAPH 1992. A vertex is simple, on a border,
-//! on one feature edge that goes through it, a corner of such, or none of these (complex). Simple ones go in the order of
-//! their distance from the average plane of their triangles, those on borders and edges in that of their distance from the
-//! line between their neighbours on it; the others stay. Where we depart from the paper:
+//! W. Schroeder, J. Zarge, W. Lorensen, "Decimation of triangle meshes", SIGGRAPH 1992. A vertex is simple, on a
+//! border, on one feature edge that goes through it, a corner of such, or none of these (complex). Simple ones go in
+//! the order of their distance from the average plane of their triangles, those on borders and edges in that of their
+//! distance from the line between their neighbours on it; the others stay. Where we depart from the paper:
 //! - vertices go in the order of a queue, not pass by pass with a growing threshold (as in W. Schroeder, "A topology
 //!   modifying progressive decimation algorithm", 1997, whose changes of topology are not made);
 //! - what was taken away around a vertex before counts in its distance, so that errors do not add up unseen;
@@ -24,16 +24,16 @@ use super::{Progress, Simplified, Simplifier, SimplifyError, Task};
 use fill::fill;
 use loops::{Kind, Sector};
 
-/// Vertex decimation: vertices are some of the old ones, topology and feature edges stay. For scans and isosurfaces, which
-/// are smooth and fine everywhere; where features are everywhere it ends early.
+/// Vertex decimation: vertices are some of the old ones, topology and feature edges stay. For scans and isosurfaces,
+/// which are smooth and fine everywhere; where features are everywhere it ends early.
 ///
 /// Weights make what they lie on go later; they have no part in the error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decimate {
     /// Angle between the normals of two triangles from which their edge is a feature, in degrees.
     pub feature_angle: f32,
-    /// Least distance of a corner of a loop from a cut through it, in lengths of the cut. Higher keeps triangles fat and
-    /// ends earlier.
+    /// Least distance of a corner of a loop from a cut through it, in lengths of the cut. Higher keeps triangles fat
+    /// and ends earlier.
     pub least_aspect: f32,
     /// Least cosine of the angle between a new triangle and the average of those it came for, in [0, 1].
     pub least_turn: f32,
@@ -228,9 +228,9 @@ fn distance(piece: &Workpiece, vertex: u32, kind: &Kind) -> Option<f64> {
     }
 }
 
-/// Whether the edges that close a vertex's loops may be: a border is closed by an edge that is not there yet, unless the
-/// vertex has but one triangle, whose side becomes the border; what a feature leads through likewise; and the loop of
-/// three is no triangle already.
+/// Whether the edges that close a vertex's loops may be: a border is closed by an edge that is not there yet, unless
+/// the vertex has but one triangle, whose side becomes the border; what a feature leads through likewise; and the
+/// loop of three is no triangle already.
 fn may_close(piece: &Workpiece, vertex: u32, kind: &Kind) -> bool {
     match kind {
         Kind::Simple(sector) => match sector.corners[..] {
