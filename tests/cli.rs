@@ -673,6 +673,8 @@ fn the_levels_are_those_that_were_asked_for() {
     let levels = by_error["levels"].as_array().expect("levels");
     assert!(levels.len() > 1 && levels.iter().all(|level| level["hausdorff"].as_f64() <= Some(most)));
     assert!(levels.iter().all(|level| level["file"].is_null()) && by_error["scene_file"].is_null());
+    let placed = |placement: &str| bake(&format!("--levels 3 --topology free --placement {placement}"));
+    assert_ne!(placed("midpoint")["levels"], placed("endpoint")["levels"]);
     let vista = bake("--preset vista --accuracy triangles");
     assert_eq!((vista["preset"].as_str(), &triangles(&vista)[..2]), (Some("vista"), &[128, 32][..]));
     let accuracy = vista["levels"][1]["accuracy"].as_f64().expect("an accuracy");
@@ -691,6 +693,7 @@ fn a_bake_that_makes_no_sense_is_refused_before_anything_is_done() {
     room.refused("bake field.obj --errors 5,-1", &["-1", "positive"]);
     room.refused("bake field.obj --errors NaN%", &["NaN", "positive"]);
     room.refused("bake field.obj --levels 3 --ratios 0.5", &["--levels", "--ratios"]);
+    room.refused("bake field.obj --border=-1", &["--border", "negative"]);
     room.refused("bake field.obj --jobs 0", &["--jobs"]);
     room.refused("bake field.obj --preset castle", &["castle", "vista"]);
     room.refused("bake field.obj --method magic", &["magic", "quadric"]);

@@ -69,8 +69,9 @@ proptest! {
     fn anything_goes_in_and_no_nonsense_comes_out(
         triangles in prop::collection::vec([0..12u32, 0..12, 0..12], 0..60),
         points in prop::collection::vec([0..4i8, 0..4, 0..3], 12),
-        (target, topology, placement) in (
+        (target, pairs, topology, placement) in (
             0..60usize,
+            prop::sample::select(&[0.0, 1.5, f32::INFINITY][..]),
             prop::sample::select(&[Topology::Preserved, Topology::Free][..]),
             prop::sample::select(&PLACEMENTS[..]),
         ),
@@ -79,7 +80,7 @@ proptest! {
         let positions = points.iter().map(|&[x, y, z]| Vec3::new(x.into(), y.into(), z.into())).collect();
         let mesh = Mesh::from(Surface { positions, triangles });
         let task = Task { locked: &locked, ..Task::new(&mesh, Target::triangles(target)) };
-        let result = simplify(&GarlandHeckbert { placement, topology, ..Default::default() }, &task);
+        let result = simplify(&GarlandHeckbert { placement, topology, pairs, ..Default::default() }, &task);
         check(&task, &result);
         let lasts: BTreeSet<[u32; 3]> = result.mesh.positions.iter().map(|p| p.to_array().map(f32::to_bits)).collect();
         for v in (0..12).filter(|&v| locked[v] && result.heirs[v] != Simplified::GONE) {
@@ -98,19 +99,71 @@ proptest! {
     }
 }
 
+/// The least cosine between a triangle of a simplified surface and the nearest one of the original.
+fn least_cos(surface: &Surface, share: usize) -> f64 {
+    let result = to(surface, surface.triangles.len() / share).mesh.surface();
+    let cos = |&triangle: &[u32; 3]| {
+        let at = center(&result, triangle);
+        let near = |&&t: &&[u32; 3]| (center(surface, t).distance_squared(at) * 1e6) as u64;
+        let old = *surface.triangles.iter().min_by_key(near).expect("there are triangles");
+        normal(&result, triangle).normalize().dot(normal(surface, old).normalize())
+    };
+    result.triangles.iter().map(cos).fold(1.0, f64::min)
+}
+
 #[test]
 fn no_triangle_of_a_smooth_surface_turns_over() {
     for (surface, name) in [(icosphere(20), "sphere"), (torus_knot(400, 32), "knot")] {
         for share in [2, 8, 16] {
-            let result = to(&surface, surface.triangles.len() / share).mesh.surface();
-            for &triangle in &result.triangles {
-                let at = center(&result, triangle);
-                let near = |&&t: &&[u32; 3]| (center(&surface, t).distance_squared(at) * 1e6) as u64;
-                let old = *surface.triangles.iter().min_by_key(near).expect("there are triangles");
-                let cos = normal(&result, triangle).normalize().dot(normal(&surface, old).normalize());
-                assert!(cos > 0.5, "{cos} at {at}, one in {share} of the {name}");
-            }
+            let cos = least_cos(&surface, share);
+            assert!(cos > 0.5, "{cos} at one in {share} of the {name}");
         }
+    }
+}
+
+/// Each turn was less than the guard allows, but a triangle may turn many times.
+#[test]
+fn turns_do_not_add_up_until_a_triangle_is_over() {
+    for (rings, sides) in [(200, 16), (300, 12), (100, 20)] {
+        for share in [2, 4, 8, 16, 32] {
+            let cos = least_cos(&torus_knot(rings, sides), share);
+            assert!(cos > 0.0, "{cos} at one in {share} of the knot of {rings} rings");
+        }
+    }
+}
+
+/// Two surfaces, the second moved.
+fn beside(surface: &Surface, by: Vec3) -> Mesh {
+    let Surface { mut positions, mut triangles } = surface.clone();
+    let count = positions.len() as u32;
+    positions.extend(surface.positions.iter().map(|&p| p + by));
+    triangles.extend(surface.triangles.iter().map(|t| t.map(|v| v + count)));
+    Mesh::from(Surface { positions, triangles })
+}
+
+/// How many parts a surface has that are not joined by a vertex.
+fn parts(surface: &Surface) -> usize {
+    let mut part: Vec<usize> = (0..surface.positions.len()).collect();
+    for [a, b] in surface.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c]]) {
+        let [old, new] = [part[a as usize], part[b as usize]];
+        part.iter_mut().filter(|p| **p == old).for_each(|p| *p = new);
+    }
+    part.into_iter().collect::<BTreeSet<usize>>().len()
+}
+
+#[test]
+fn parts_that_are_near_enough_grow_together() {
+    for mesh in [beside(&torus(24, 12, 0.3), Vec3::X * 2.62), beside(&terrain(12, 1), Vec3::Z * 0.02)] {
+        let joined = |pairs: f32, topology: Topology| {
+            let method = GarlandHeckbert { pairs, topology, ..Default::default() };
+            let task = Task::new(&mesh, Target::triangles(mesh.triangles.len() / 4));
+            let result = simplify(&method, &task);
+            check(&task, &result);
+            parts(&result.mesh.surface()) == 1
+        };
+        assert!(joined(0.05, Topology::Free), "near enough");
+        assert!(!joined(0.01, Topology::Free), "too far");
+        assert!(!joined(0.0, Topology::Free) && !joined(0.05, Topology::Preserved), "edges alone");
     }
 }
 

@@ -48,10 +48,10 @@ impl Extent {
 /// larger.
 pub(super) fn bound(from: &Shape, to: &Shape, known: Extent, options: &Options) -> Extent {
     let mut search = Search::new(from, to, known, options);
-    search.visit_vertices();
+    let open = search.visit_vertices();
     let triangles = (from.corners.len() + to.corners.len()).max(FEW_TRIANGLES);
     let most_splits = options.max_splits.saturating_mul(triangles);
-    search.cover_triangles(most_splits);
+    search.cover_triangles(&open, most_splits);
     search.refine(most_splits);
     search.extent(known)
 }
@@ -68,7 +68,7 @@ struct Search<'a> {
     /// The largest squared bound of what was not looked at more closely.
     left2: f64,
     splits: usize,
-    /// For each vertex the triangle nearest to it.
+    /// For each vertex the triangle nearest to it, if it was visited.
     near: Vec<u32>,
     /// What is to be looked at: the bits of the squared bound (which order as the numbers do), and the slot of the
     /// piece.
@@ -109,9 +109,17 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn visit_vertices(&mut self) {
-        let mut hint = 0;
-        for (corners, vertices) in self.from.corners.iter().zip(&self.from.triangles) {
+    /// Finds what is nearest to the vertices, and with it most of what distances there are; returns the triangles that
+    /// call for a closer look.
+    ///
+    /// Where the triangle found last is close enough to all of the next one, as it mostly is where surfaces resemble each
+    /// other, no vertex of that can be far away, and none is looked up.
+    fn visit_vertices(&mut self) -> Vec<u32> {
+        let (from, mut hint, mut open) = (self.from, 0, Vec::new());
+        for (triangle, (&corners, vertices)) in (0..).zip(from.corners.iter().zip(&from.triangles)) {
+            if self.settles(&Piece { corners, near: [hint; 3], also: hint, depth: 0 }) {
+                continue;
+            }
             for (&corner, &vertex) in corners.iter().zip(vertices) {
                 if self.near[vertex as usize] == UNSEEN {
                     let nearest = self.to.bvh.nearest(corner, hint);
@@ -120,14 +128,18 @@ impl<'a> Search<'a> {
                 }
                 hint = self.near[vertex as usize];
             }
+            open.push(triangle);
         }
+        open
     }
 
-    /// Looks at every triangle: first at what is near to its corners, then at what is near to its centre.
-    fn cover_triangles(&mut self, most: usize) {
+    /// Looks at triangles whose vertices were visited: first at what is near to their corners, then at what is near to
+    /// their centre.
+    fn cover_triangles(&mut self, triangles: &[u32], most: usize) {
         let mut overlay = Overlay::new(self.to, self.from.reach.max(self.to.reach));
-        for (&corners, vertices) in self.from.corners.iter().zip(&self.from.triangles) {
-            let near = vertices.map(|vertex| self.near[vertex as usize]);
+        for &triangle in triangles {
+            let corners = self.from.corners[triangle as usize];
+            let near = self.from.triangles[triangle as usize].map(|vertex| self.near[vertex as usize]);
             let mut piece = Piece { corners, near, also: near[0], depth: 0 };
             if self.settles(&piece) {
                 continue;

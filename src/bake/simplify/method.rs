@@ -3,7 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::{AdaptiveCluster, Cluster, GarlandHeckbert, Melax, Simplifier};
+use super::{
+    AdaptiveCluster, CellCollapse, Cluster, Decimate, GarlandHeckbert, Melax, Simplifier, TriangleCollapse,
+};
 
 /// A method of simplification; all with their defaults.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -17,11 +19,25 @@ pub enum Method {
     Cluster,
     /// [`AdaptiveCluster`]
     AdaptiveCluster,
+    /// [`Decimate`]
+    Decimate,
+    /// [`TriangleCollapse`]
+    Triangle,
+    /// [`CellCollapse`]
+    Cell,
 }
 
 impl Method {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Quadric, Self::Melax, Self::Cluster, Self::AdaptiveCluster];
+    pub const ALL: [Self; 7] = [
+        Self::Quadric,
+        Self::Melax,
+        Self::Cluster,
+        Self::AdaptiveCluster,
+        Self::Decimate,
+        Self::Triangle,
+        Self::Cell,
+    ];
 
     /// What the command line calls it.
     pub const fn name(self) -> &'static str {
@@ -30,6 +46,9 @@ impl Method {
             Self::Melax => "melax",
             Self::Cluster => "cluster",
             Self::AdaptiveCluster => "adaptive-cluster",
+            Self::Decimate => "decimate",
+            Self::Triangle => "triangle",
+            Self::Cell => "cell",
         }
     }
 
@@ -40,6 +59,9 @@ impl Method {
             Self::Melax => Box::new(Melax::default()),
             Self::Cluster => Box::new(Cluster::default()),
             Self::AdaptiveCluster => Box::new(AdaptiveCluster::default()),
+            Self::Decimate => Box::new(Decimate::default()),
+            Self::Triangle => Box::new(TriangleCollapse::default()),
+            Self::Cell => Box::new(CellCollapse::default()),
         }
     }
 }

@@ -3,6 +3,14 @@
 //! | method | what it does | take it for |
 //! |---|---|---|
 //! | [`GarlandHeckbert`] | contracts edges in the order of their quadric error | nearly everything |
+//! | [`Melax`] | moves vertices onto neighbours by length times bend | moderate steps that keep old vertices, attributes and all |
+//! | [`Cluster`] | joins the vertices of each cell of a grid | speed, whatever the input; far vistas |
+//! | [`AdaptiveCluster`] | joins connected vertices of octree cells, as large as the error allows | speed with seams, thin parts and joints kept |
+//! | [`Decimate`] | takes vertices out and fills the holes | scans and isosurfaces whose vertices must stay where they are |
+//! | [`TriangleCollapse`] | contracts triangles in the order of their quadric error | even meshes, few and large steps |
+//! | [`CellCollapse`] | joins the vertices of octree cells one cell after another | crowds of small parts: rubble, foliage |
+//!
+//! [`Method`] has them by name, as they are by default.
 //!
 //! A method says how far off it believes the result to be. That is an estimate, good for ordering and stopping; what
 //! the runtime is told of a level has to be measured.
@@ -19,10 +27,11 @@
 //! # Ok::<(), lod_budget::bake::simplify::SimplifyError>(())
 //! ```
 
+mod cell;
 mod cluster;
+mod decimate;
 mod error;
 mod fans;
-mod likeness;
 mod link;
 mod melax;
 mod method;
@@ -31,13 +40,18 @@ mod planes;
 mod quadric;
 mod queue;
 mod rebuild;
+mod star;
+mod triangle;
 mod workpiece;
 
+pub use cell::CellCollapse;
 pub use cluster::{AdaptiveCluster, Cluster, Representative};
+pub use decimate::Decimate;
 pub use error::SimplifyError;
 pub use melax::Melax;
 pub use method::{Method, UnknownMethod};
 pub use quadric::{Attributes, GarlandHeckbert, Placement, Topology};
+pub use triangle::TriangleCollapse;
 
 use std::ops::ControlFlow;
 

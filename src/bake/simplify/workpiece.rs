@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use glam::{DVec3, Vec3};
 
+use super::cluster::cloud::without_repeats;
 use super::fans::Fans;
-use super::likeness::difference;
 use super::link::{Complex, Stamps, others};
 use super::rebuild::{Corner, Facet, Rebuilt};
 use super::{Progress, Simplified, Stopped, Task};
@@ -16,6 +16,9 @@ pub(super) const GONE: [u32; 3] = [u32::MAX; 3];
 
 /// How many steps pass between two calls of the progress callback.
 const STRIDE: usize = 4096;
+
+/// What a triangle's corner looks like, other than where it is: its material and its wedge.
+type Look = (u32, u32);
 
 /// A mesh while vertices are taken out of it. Vertices have the indices of the task's positions; triangles are numbered
 /// anew, those that use a position twice left out.
@@ -124,8 +127,7 @@ impl<'a> Workpiece<'a> {
         self.fans.of(a).iter().copied().filter(move |&t| self.triangles[t as usize].contains(&b))
     }
 
-    /// What a triangle's corner looks like, other than where it is: its wedge and its material.
-    pub(super) fn look(&self, triangle: u32, vertex: u32) -> (u32, u32) {
+    fn look(&self, triangle: u32, vertex: u32) -> Look {
         let wedge = if self.has_attributes { self.wedge_at(triangle, vertex) } else { vertex };
         (self.groups[triangle as usize], wedge)
     }
@@ -153,16 +155,23 @@ impl<'a> Workpiece<'a> {
         sides().any(|p| self.at_edge(vertex, p).count() != 2)
     }
 
+    /// A triangle's corner at a vertex.
+    pub(super) fn corner(&self, triangle: u32, vertex: u32) -> Corner {
+        Corner { vertex, wedge: self.wedge_at(triangle, vertex) }
+    }
+
     fn wedge_at(&self, triangle: u32, vertex: u32) -> u32 {
         let corners = self.triangles[triangle as usize];
         let corner = corners.iter().position(|&c| c == vertex).unwrap_or(0);
         self.wedges[triangle as usize][corner]
     }
 
-    /// Makes all triangles of `gone` ones of `kept`. Those that use both go. Corners take the wedge of `kept` that they
-    /// are led to by a triangle between the two, or else the one that looks most alike.
+    /// Makes all triangles of `gone` ones of `kept`. Those that use both go. Corners take the wedge of `kept` that a
+    /// triangle between the two leads them to; without one they keep theirs, so that no corner crosses a seam.
     pub(super) fn merge(&mut self, gone: u32, kept: u32) {
-        let leads = self.leads(gone, kept);
+        let lead = |t: u32| (self.look(t, gone), self.wedge_at(t, kept));
+        let mut leads: Vec<_> = self.at_edge(gone, kept).map(lead).collect();
+        leads.sort_unstable();
         let mut fan = std::mem::take(&mut self.fan);
         fan.clear();
         fan.extend_from_slice(self.fans.of(gone));
@@ -181,25 +190,11 @@ impl<'a> Workpiece<'a> {
         self.fan = fan;
     }
 
-    /// The wedges of `kept`, each with the look at `gone` that leads to it if a triangle has both.
-    fn leads(&self, gone: u32, kept: u32) -> Vec<(Option<(u32, u32)>, u32)> {
-        let lead = |&t: &u32| {
-            let is_between = self.triangles[t as usize].contains(&gone);
-            (is_between.then(|| self.look(t, gone)), self.wedge_at(t, kept))
-        };
-        let mut leads: Vec<_> = self.fans.of(kept).iter().map(lead).collect();
-        leads.sort_unstable();
-        leads.dedup();
-        leads
-    }
-
     /// Makes a triangle of `gone` one of `kept`.
-    fn hand_over(&mut self, triangle: u32, gone: u32, kept: u32, leads: &[(Option<(u32, u32)>, u32)]) {
-        let (look, wedge) = (self.look(triangle, gone), self.wedge_at(triangle, gone));
-        let is_led = leads.iter().find(|(from, _)| *from == Some(look));
-        let far = |to: u32| difference(self.task.mesh, wedge, to);
-        let alike = || leads.iter().min_by(|a, b| far(a.1).total_cmp(&far(b.1)));
-        let wedge = is_led.or_else(alike).map_or(wedge, |&(_, to)| to);
+    fn hand_over(&mut self, triangle: u32, gone: u32, kept: u32, leads: &[(Look, u32)]) {
+        let look = self.look(triangle, gone);
+        let lead = leads.iter().find(|(from, _)| *from == look).map(|&(_, to)| to);
+        let wedge = lead.unwrap_or_else(|| self.wedge_at(triangle, gone));
         let at = triangle as usize;
         for corner in 0..3 {
             if self.triangles[at][corner] == gone {
@@ -216,6 +211,26 @@ impl<'a> Workpiece<'a> {
         }
         self.triangles[triangle as usize] = GONE;
         self.live -= 1;
+    }
+
+    /// Puts a triangle in the place of one that went, in its group.
+    pub(super) fn insert(&mut self, triangle: u32, corners: [Corner; 3]) {
+        self.triangles[triangle as usize] = corners.map(|c| c.vertex);
+        self.wedges[triangle as usize] = corners.map(|c| c.wedge);
+        for Corner { vertex, .. } in corners {
+            let mut fan = std::mem::take(&mut self.fan);
+            fan.clear();
+            fan.extend_from_slice(self.fans.of(vertex));
+            fan.push(triangle);
+            self.fans.replace(vertex, &fan);
+            self.fan = fan;
+        }
+        self.live += 1;
+    }
+
+    /// Says what a vertex whose triangles have gone has become.
+    pub(super) fn set_heir(&mut self, gone: u32, heir: u32) {
+        self.heirs[gone as usize] = heir;
     }
 
     /// Moves a vertex, which from then on stems from `origin`.
@@ -246,10 +261,12 @@ impl<'a> Workpiece<'a> {
         Stopped::Exhausted
     }
 
-    /// What is left, with an error in object units.
+    /// What is left, each triangle once, with an error in object units.
     pub(super) fn finish(mut self, error: f32, stopped: Stopped) -> Simplified {
         let left = (0..self.triangles.len()).filter(|&t| self.triangles[t] != GONE);
-        let facets = left.map(|t| self.facet(t)).collect();
+        let facets = without_repeats(left.map(|t| self.facet(t)).collect());
+        let is_met = facets.len() <= self.task.target.triangles;
+        let stopped = if is_met { Stopped::Triangles } else { stopped };
         let Rebuilt { mesh, vertices, wedges, position_of } =
             Rebuilt::new(self.task.mesh, &self.positions, facets);
         let origins = vertices.iter().map(|&v| self.origins[v as usize]).collect();

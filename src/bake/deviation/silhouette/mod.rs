@@ -98,7 +98,7 @@ impl SilhouetteDeviation {
     }
 }
 
-/// How far the silhouettes of two surfaces are apart. Some 0.3 s for two surfaces of half a million triangles.
+/// How far the silhouettes of two surfaces are apart. About a second for two surfaces of half a million triangles.
 ///
 /// O(triangles + pixels) per direction, but for triangles larger than a pixel, which cost their height in pixels.
 ///

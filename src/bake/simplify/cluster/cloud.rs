@@ -184,7 +184,7 @@ pub(in crate::bake::simplify) fn is_apart<T: PartialEq>([a, b, c]: [T; 3]) -> bo
 }
 
 /// Keeps the first of the facets that have the same corners in the same direction.
-fn without_repeats(facets: Vec<Facet>) -> Vec<Facet> {
+pub(in crate::bake::simplify) fn without_repeats(facets: Vec<Facet>) -> Vec<Facet> {
     let key = |facet: &Facet| {
         let mut corners = facet.corners.map(|c| c.vertex);
         let lowest = (0..3).min_by_key(|&i| corners[i]).unwrap_or(0);

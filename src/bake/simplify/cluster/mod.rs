@@ -2,7 +2,7 @@
 
 mod adaptive;
 pub(super) mod cloud;
-mod octree;
+pub(super) mod octree;
 mod uniform;
 
 pub use adaptive::AdaptiveCluster;

@@ -6,10 +6,7 @@ use super::cloud::{Cloud, Clusters, Joined};
 use crate::bake::simplify::planes::Planes;
 
 /// Levels of the octree below the box.
-const DEPTH: u32 = 21;
-
-/// How much leaving a border counts, compared with leaving the surface.
-const BORDER: f64 = 10.0;
+pub(in crate::bake::simplify) const DEPTH: u32 = 21;
 
 /// How much of a cell's diagonal counts as error: enough that what is flat is joined in small cells before large ones.
 const SIZE: f64 = 0.01;
@@ -27,8 +24,6 @@ struct Node {
     /// Sum of the vertices, and their number.
     sum: DVec3,
     count: u32,
-    /// Sum of the weights' areas over that of areas, as a product with the area.
-    plain_area: f64,
     /// The dominant joint of all; [`NONE`] without skin, [`MIXED`] if they differ.
     joint: u32,
     /// Where the vertex of this node is.
@@ -161,7 +156,6 @@ impl Node {
         self.planes += part.planes;
         self.sum += part.sum;
         self.count += part.count;
-        self.plain_area += part.plain_area;
         self.joint = if self.joint == part.joint { self.joint } else { MIXED };
         self.cost = self.cost.max(part.cost);
         self.error = self.error.max(part.error);
@@ -175,8 +169,7 @@ impl Node {
         self.place = self.planes.least(self.sum / f64::from(self.count)).clamp(corner, corner + side);
         let off = self.planes.distance_at(self.place);
         self.error = self.error.max(if self.joint == MIXED { diagonal } else { off });
-        let weight = if self.plain_area > 0.0 { self.planes.area / self.plain_area } else { 1.0 };
-        let cost = weight.sqrt() * self.error.hypot(SIZE * diagonal);
+        let cost = self.planes.weight().sqrt() * self.error.hypot(SIZE * diagonal);
         self.cost = self.cost.max(cost.min(f64::MAX));
     }
 
@@ -193,7 +186,6 @@ fn leaves(cloud: &Cloud, sides: &[Side]) -> Vec<Node> {
         planes: Planes::NONE,
         sum: cloud.place(vertex),
         count: 1,
-        plain_area: 0.0,
         joint: joints[vertex as usize],
         place: cloud.place(vertex),
         cost: 0.0,
@@ -202,10 +194,8 @@ fn leaves(cloud: &Cloud, sides: &[Side]) -> Vec<Node> {
     let mut nodes: Vec<Node> = (0..joints.len() as u32).map(leaf).collect();
     for (t, corners) in cloud.triangles.iter().enumerate() {
         let plane = cloud.plane_of(t);
-        let plain_area = Planes::of(corners.map(|v| cloud.place(v)), 1.0).area;
         for &corner in corners {
             nodes[corner as usize].planes += plane;
-            nodes[corner as usize].plain_area += plain_area;
         }
     }
     for same in sides.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high)).filter(|same| same.len() != 2) {
@@ -214,13 +204,11 @@ fn leaves(cloud: &Cloud, sides: &[Side]) -> Vec<Node> {
     nodes
 }
 
-/// Holds the ends of a border to the plane through it that stands upright on its triangle.
+/// Holds the ends of a border to the plane through it.
 fn hold_border(cloud: &Cloud, side: &Side, nodes: &mut [Node]) {
-    let [a, b, c] = cloud.triangles[side.triangle as usize].map(|v| cloud.place(v));
-    let edge = cloud.place(side.high) - cloud.place(side.low);
-    let normal = (b - a).cross(c - a).cross(edge).normalize_or_zero();
-    let weight = BORDER * cloud.weight_of(side.triangle as usize) * edge.length_squared();
-    let plane = Planes::upright(normal, cloud.place(side.low), weight);
+    let places = cloud.triangles[side.triangle as usize].map(|v| cloud.place(v));
+    let ends = [side.low, side.high].map(|v| cloud.place(v));
+    let plane = Planes::at_border(places, ends, cloud.weight_of(side.triangle as usize));
     nodes[side.low as usize].planes += plane;
     nodes[side.high as usize].planes += plane;
 }
@@ -246,7 +234,7 @@ fn sides_of(cloud: &Cloud) -> Vec<Side> {
 }
 
 /// The cells that a place is in, from the largest down: three bits for each.
-fn code(place: DVec3) -> u64 {
+pub(in crate::bake::simplify) fn code(place: DVec3) -> u64 {
     let cells = f64::from(1 << DEPTH);
     let cell = (place * cells).max(DVec3::ZERO).min(DVec3::splat(cells - 1.0)).as_u64vec3();
     spread(cell.x) << 2 | spread(cell.y) << 1 | spread(cell.z)
@@ -262,12 +250,12 @@ fn spread(x: u64) -> u64 {
 }
 
 /// How many cells below the box two places share.
-fn shared_depth(a: u64, b: u64) -> usize {
+pub(in crate::bake::simplify) fn shared_depth(a: u64, b: u64) -> usize {
     ((a ^ b).leading_zeros().saturating_sub(1) / 3).min(DEPTH) as usize
 }
 
 /// The lowest corner of a cell.
-fn corner_of(code: u64, depth: usize) -> DVec3 {
+pub(in crate::bake::simplify) fn corner_of(code: u64, depth: usize) -> DVec3 {
     let axis = |shift: u32| {
         let bits = (0..depth as u32).map(|level| code >> (3 * (DEPTH - 1 - level) + shift) & 1);
         bits.fold(0, |axis, bit| axis << 1 | bit) as f64

@@ -9,6 +9,7 @@ use super::form::{Form, Quadric};
 use super::guard::{Facing, Guard};
 use super::layer::{Around, Move};
 use super::layers::Layers;
+use super::pairs::Pairs;
 use super::placement::Spot;
 use super::{GarlandHeckbert, Topology};
 use crate::bake::simplify::fans::Fans;
@@ -103,6 +104,8 @@ pub(super) struct Greedy<'a> {
     /// Per triangle, where it faced before all contractions.
     facings: Vec<Facing>,
     fans: Fans,
+    /// What may be contracted besides edges, if anything.
+    pairs: Option<Pairs>,
     /// The attributes, if there are any.
     layers: Option<Layers<'a>>,
     marks: Vec<u8>,
@@ -152,6 +155,7 @@ impl<'a> Greedy<'a> {
             facings: vec![Facing::default(); triangles.len()],
             triangles,
             old_triangles,
+            pairs: None,
             layers,
             marks: origins.iter().map(lock).collect(),
             choices: vec![Choice::default(); count],
@@ -166,7 +170,17 @@ impl<'a> Greedy<'a> {
             partners: Vec::new(),
         };
         greedy.sum_up(&weights);
+        greedy.find_pairs();
         greedy
+    }
+
+    /// Finds what may be contracted besides edges.
+    fn find_pairs(&mut self) {
+        let distance = f64::from(self.method.pairs);
+        if self.method.topology == Topology::Free && distance > 0.0 {
+            let complex = Complex { triangles: &self.triangles, fans: &self.fans };
+            self.pairs = Some(Pairs::find(&self.positions, complex, distance));
+        }
     }
 
     #[inline]
@@ -438,7 +452,7 @@ impl<'a> Greedy<'a> {
     /// Where every edge has as many triangles in either direction it is enough to look at one corner of each.
     fn cheapest(&mut self, vertex: u32, from: Choice) -> Choice {
         let fan = self.fans.of(vertex);
-        if fan.len() > LARGEST_FAN {
+        if fan.is_empty() || fan.len() > LARGEST_FAN {
             return Choice::NONE;
         }
         let is_odd = self.marks[vertex as usize] & mark::ODD != 0;
@@ -449,6 +463,10 @@ impl<'a> Greedy<'a> {
             partners.extend(sides.flatten().filter(|&p| p > vertex));
         } else {
             partners.extend(sides.map(|[p, _]| p).filter(|&p| p > vertex));
+        }
+        if let Some(pairs) = &self.pairs {
+            let is_left = |p: &&u32| **p > vertex && !self.fans.of(**p).is_empty();
+            partners.extend(pairs.of(vertex).iter().filter(is_left));
         }
         // All are read before any is needed: one wait instead of one for each.
         black_box(partners.iter().fold(0, |bits, &p| bits ^ self.quadrics[p as usize].bits()));
@@ -481,6 +499,7 @@ impl<'a> Greedy<'a> {
         };
         both & mark::LOCKED == 0
             && self.in_units(error) <= self.most
+            && !self.fans.of(gone).is_empty()
             && self.fans.of(kept).len() + self.fans.of(gone).len() <= LARGEST_FAN
             && self.guard_allows(kept, gone, to)
             && self.guard_allows(gone, kept, to)
@@ -527,6 +546,7 @@ impl<'a> Greedy<'a> {
         self.heirs[gone] = heir;
         self.marks[kept] |= self.marks[gone] & mark::INHERITED;
         self.merge_fans(heir, parted);
+        self.merge_pairs(heir, parted);
         self.marks[gone] = mark::GONE;
         self.choose(heir, None);
     }
@@ -550,6 +570,18 @@ impl<'a> Greedy<'a> {
         self.fans.replace(gone, &[]);
         self.fans.replace(kept, &fan);
         self.fan = fan;
+    }
+
+    /// Gives `kept` the pairs of both.
+    fn merge_pairs(&mut self, kept: u32, gone: u32) {
+        let Some(mut pairs) = self.pairs.take() else { return };
+        for &partner in pairs.of(kept).iter().chain(pairs.of(gone)) {
+            if partner != kept && partner != gone {
+                self.disturb(partner, kept, gone);
+            }
+        }
+        pairs.contract(kept, gone);
+        self.pairs = Some(pairs);
     }
 
     /// Whether a triangle of `kept` stays one.

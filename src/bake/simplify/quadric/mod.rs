@@ -16,6 +16,7 @@ mod greedy;
 mod guard;
 mod layer;
 mod layers;
+mod pairs;
 mod placement;
 
 pub use layers::Attributes;
@@ -46,6 +47,11 @@ pub struct GarlandHeckbert {
     pub placement: Placement,
     /// Whether holes may close, and the like.
     pub topology: Topology,
+    /// Vertices that are closer than this in the original mesh, in object units, may be contracted without an edge
+    /// between them, which lets parts grow together; 0 for edges alone. Needs [`Topology::Free`], without which it does
+    /// nothing. A vertex is paired with the eight nearest of those that share no triangle with it, and with any for which
+    /// it is among their eight.
+    pub pairs: f32,
     /// How much moving away from a border counts, compared with moving away from the surface, ≥ 0. Edges of more than
     /// two triangles count as borders.
     pub border: f32,
@@ -65,6 +71,7 @@ impl Default for GarlandHeckbert {
         Self {
             placement: Placement::Optimal,
             topology: Topology::Preserved,
+            pairs: 0.0,
             border: 10.0,
             attributes: Attributes::default(),
             seam: 1.0,

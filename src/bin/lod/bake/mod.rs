@@ -3,6 +3,7 @@
 mod inputs;
 mod mesh;
 mod outputs;
+mod quadric;
 mod record;
 mod scene;
 mod settings;
@@ -21,6 +22,7 @@ use lod_budget::bake::chain::{Accuracy, Length, Preset};
 use lod_budget::bake::simplify::Method;
 
 use inputs::{Found, Input};
+use quadric::QuadricArgs;
 use scene::SceneArgs;
 use settings::Settings;
 use summary::{Baked, Summary};
@@ -39,6 +41,8 @@ pub struct Args {
     meshes: Vec<PathBuf>,
     #[command(flatten)]
     chain: ChainArgs,
+    #[command(flatten)]
+    quadric: QuadricArgs,
     #[command(flatten)]
     scene: SceneArgs,
     /// Folder to write to; made where there is none

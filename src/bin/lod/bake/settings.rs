@@ -26,6 +26,7 @@ impl Settings {
     /// What no mesh could be baked with.
     pub fn of(args: &Args) -> anyhow::Result<Self> {
         let plan = args.chain.plan();
+        let plan = Plan { quadric: args.quadric.over(plan.quadric), ..plan };
         plan.check()?;
         Ok(Self {
             plan,

@@ -84,11 +84,13 @@ fn mesh_row(mesh: &MeshRow) -> Vec<String> {
 
 /// What to make of it.
 fn notes(meshes: &[MeshRow]) -> Vec<String> {
-    let mut notes: Vec<String> = meshes.iter().flat_map(odd_notes).collect();
+    let mut notes =
+        if meshes.len() > FEW { vec![odd_note(meshes)] } else { meshes.iter().flat_map(odd_notes).collect() };
+    notes.retain(|note| !note.is_empty());
     let kept = meshes.iter().filter(|mesh| mesh.status == Status::Kept).count();
     let seconds = |time: fn(&MeshRow) -> f64| {
         let baked = meshes.iter().filter(|mesh| mesh.status == Status::Baked);
-        significant(baked.map(time).sum::<f64>(), 3)
+        significant(baked.map(time).fold(0.0, |sum, time| sum + time), 3)
     };
     let (simplify, measure) = (seconds(|mesh| mesh.seconds), seconds(|mesh| mesh.measure_seconds));
     let baked = counted(meshes.len() - kept, "mesh").replace("meshs", "meshes");
@@ -125,6 +127,14 @@ fn scene_notes(scene: &SceneRow) -> Vec<String> {
         notes.push(format!("{name}: {} more left alone", left.len() - FINDINGS));
     }
     notes
+}
+
+/// How many of many meshes are odd; nothing where none is.
+fn odd_note(meshes: &[MeshRow]) -> String {
+    match meshes.iter().filter(|mesh| !mesh.findings.is_empty()).count() {
+        0 => String::new(),
+        odd => format!("Something is odd about {odd} of {} meshes: --json says what.", meshes.len()),
+    }
 }
 
 fn odd_notes(mesh: &MeshRow) -> Vec<String> {
