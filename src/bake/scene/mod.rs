@@ -20,8 +20,8 @@
 //! What an author made is measured as well ([`Scene::authored`]), so that accuracies can be weighed against each other.
 //!
 //! **Chunks**: a mesh much larger than its neighbours is in view near and far at once, and no level of it is right. It
-//! is [split](mod@super::split): each chunk is an object of its own, a child of the node that showed the whole, and fits its
-//! neighbours at every mix of levels. Taken to be so is a mesh that ([`Chunks::Large`])
+//! is [split](mod@super::split): each chunk is an object of its own, a child of the node that showed the whole, and fits
+//! its neighbours at every mix of levels. Taken to be so is a mesh that ([`Chunks::Large`])
 //! - has more than twice as many triangles as a chunk,
 //! - reaches four times as far as half of the objects that are shown beside it, and
 //! - is at least a quarter as large as the whole scene, and so about as large as one sees far.

@@ -3,7 +3,7 @@
 use lod_budget::bake::chain::{Appearance, Chain, ChainLevel, LeftOut, Reason};
 use lod_budget::bake::deviation::attributes::Difference;
 use lod_budget::bake::scene::Left;
-use lod_budget::{LevelRecord, LodTable};
+use lod_budget::table::{LevelRecord, LodTable};
 use serde::{Deserialize, Serialize};
 
 use super::inputs::{Found, Input};
