@@ -1,7 +1,7 @@
 //! Scenes with levels: what was in the file stays, what is new is found by readers, chunks fit.
 #![cfg(feature = "bake")]
 
-use lod_budget::bake::chain::{Chain, ChainLevel, Plan, quietly};
+use lod_budget::bake::chain::{Chain, ChainLevel, Limits, Plan, quietly};
 use lod_budget::bake::deviation;
 use lod_budget::bake::read::gltf::read_meshes;
 use lod_budget::bake::scene::{Chunks, Options, Part, Scene};
@@ -100,11 +100,12 @@ fn open<'a>(glb: &'a [u8], options: &Options) -> Scene<'a> {
     Scene::open(glb, "town.glb", None, options).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Measures no closer than it has to.
+/// Measures no closer than it has to, and goes on however far a level is off.
 fn plan() -> Plan {
     let measure =
         deviation::Options { relative: 0.5, rms_error: 0.1, max_samples: 1 << 10, ..Plan::default().measure };
-    Plan { measure, look: None, ..Plan::default() }
+    let limits = Limits { most_error: None, ..Limits::default() };
+    Plan { measure, limits, look: None, ..Plan::default() }
 }
 
 fn chains(scene: &Scene<'_>) -> Vec<Chain> {
@@ -334,7 +335,8 @@ fn what_is_much_larger_than_its_neighbours_becomes_chunks_that_fit_at_every_mix(
         std::iter::once(mesh_of(chunk)).chain(coarser).collect()
     };
     let chains: Vec<Vec<&Mesh>> = chunks.iter().map(|chunk| chain_of(chunk)).collect();
-    assert!(chains.iter().all(|chain| chain.len() > 2));
+    let lengths: Vec<usize> = chains.iter().map(Vec::len).collect();
+    assert!(lengths.iter().all(|&levels| levels > 2), "{lengths:?}");
     for mix in 0..200_usize {
         let pick = |i: usize, levels: usize| (mix >> i ^ mix.wrapping_mul(i * i + 7)) % levels;
         let levels: Vec<&Mesh> =

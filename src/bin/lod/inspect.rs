@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 
-use lod_budget::LevelRecord;
 use lod_budget::files::inspect::{InstanceInspection, PathInspection, SceneInspection, Total};
 use lod_budget::files::{Break, BreakKind, Inspection, inspect};
+use lod_budget::table::LevelRecord;
 use serde::Serialize;
 
 use crate::text::{count, counted, plain};
