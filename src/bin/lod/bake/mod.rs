@@ -39,12 +39,6 @@ pub struct Args {
     /// Mesh files, folders of them, or patterns such as 'props/*.obj'
     #[arg(required = true, value_name = "MESH")]
     meshes: Vec<PathBuf>,
-    #[command(flatten)]
-    chain: ChainArgs,
-    #[command(flatten)]
-    quadric: QuadricArgs,
-    #[command(flatten)]
-    scene: SceneArgs,
     /// Folder to write to; made where there is none
     #[arg(long, value_name = "DIR", default_value = "baked")]
     out: PathBuf,
@@ -66,6 +60,12 @@ pub struct Args {
     /// Print one JSON object and nothing else
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    chain: ChainArgs,
+    #[command(flatten)]
+    quadric: QuadricArgs,
+    #[command(flatten)]
+    scene: SceneArgs,
 }
 
 /// What the levels shall be like.
