@@ -1,7 +1,8 @@
 //! Scenes with levels: what was in the file stays, what is new is found by readers, chunks fit.
 #![cfg(feature = "bake")]
 
-use lod_budget::bake::chain::{Chain, ChainLevel, Plan, quietly};
+use lod_budget::bake::chain::{Chain, ChainLevel, Limits, Plan, quietly};
+use lod_budget::bake::deviation;
 use lod_budget::bake::read::gltf::read_meshes;
 use lod_budget::bake::scene::{Chunks, Options, Part, Scene};
 use lod_budget::bake::shapes::{icosphere, terrain, torus_knot};
@@ -99,8 +100,17 @@ fn open<'a>(glb: &'a [u8], options: &Options) -> Scene<'a> {
     Scene::open(glb, "town.glb", None, options).unwrap_or_else(|e| panic!("{e}"))
 }
 
+/// Measures no closer than it has to, and goes on however far a level is off.
+fn plan() -> Plan {
+    let measure =
+        deviation::Options { relative: 0.5, rms_error: 0.1, max_samples: 1 << 10, ..Plan::default().measure };
+    let limits = Limits { most_error: None, ..Limits::default() };
+    Plan { measure, limits, look: None, ..Plan::default() }
+}
+
 fn chains(scene: &Scene<'_>) -> Vec<Chain> {
-    let bake = |part: &Part| part.bake(&Plan::default(), &mut quietly);
+    let plan = plan();
+    let bake = |part: &Part| part.bake(&plan, &mut quietly);
     scene.parts().iter().map(|part| bake(part).unwrap_or_else(|e| panic!("{}: {e}", part.name))).collect()
 }
 
@@ -325,7 +335,8 @@ fn what_is_much_larger_than_its_neighbours_becomes_chunks_that_fit_at_every_mix(
         std::iter::once(mesh_of(chunk)).chain(coarser).collect()
     };
     let chains: Vec<Vec<&Mesh>> = chunks.iter().map(|chunk| chain_of(chunk)).collect();
-    assert!(chains.iter().all(|chain| chain.len() > 2));
+    let lengths: Vec<usize> = chains.iter().map(Vec::len).collect();
+    assert!(lengths.iter().all(|&levels| levels > 2), "{lengths:?}");
     for mix in 0..200_usize {
         let pick = |i: usize, levels: usize| (mix >> i ^ mix.wrapping_mul(i * i + 7)) % levels;
         let levels: Vec<&Mesh> =
@@ -369,7 +380,7 @@ fn levels_that_are_none_of_the_scene_are_refused() {
     assert_eq!(strange, "town.glb: level 1 of rock: its group '7' must be one of the part's");
     let torn = refusal(&|chains| {
         let mesh = &chains[0].levels[0].mesh;
-        let coarse = Plan::default().bake(mesh, &mut quietly).expect("a chain").levels.remove(2);
+        let coarse = plan().bake(mesh, &mut quietly).expect("a chain").levels.remove(2);
         chains[0].levels[2] = coarse;
     });
     assert!(torn.starts_with("town.glb: level 2 of track_chunk0: it must have the edge from ["), "{torn}");
@@ -387,7 +398,7 @@ fn chains_of_the_author_are_measured_and_stay() {
     let scene = open(&glb, &Options::default());
     let [authored] = scene.authored() else { panic!("one chain, not {}", scene.authored().len()) };
     assert_eq!((authored.instances, authored.levels.len(), authored.name.as_str()), (2, 2, "ball"));
-    let chain = [Chain::of_levels(authored.levels.clone(), &Plan::default().measure).expect("measured")];
+    let chain = [Chain::of_levels(authored.levels.clone(), &plan().measure).expect("measured")];
     let error = chain[0].levels[1].error;
     assert!((0.05..0.2).contains(&error), "an icosphere of 80 triangles is {error} off");
     let written = scene.write(&[], &levels(&chain)).expect("written");

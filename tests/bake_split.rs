@@ -120,7 +120,8 @@ proptest! {
         prop_assert!(seen.iter().all(|&n| n == 1));
     }
 
-    /// By looking at all chunks: a position is locked where another one has it, an edge shared where another one has it.
+    /// By looking at all chunks: a position is locked where another one has it, an edge shared where another one has
+    /// it.
     #[test]
     fn what_chunks_share_is_known(mesh in meshes(), most in 20..200usize) {
         let chunks = split(&mesh, &Options { triangles: most, share: 0.0 });
@@ -141,8 +142,8 @@ proptest! {
         }
     }
 
-    /// The border of a mix is what the mesh's border has become; where there was none there is none, even if topology is
-    /// free. (With a border it may be, too: but where a triangle goes with all its corners, nobody tells where to.)
+    /// The border of a mix is what the mesh's border has become; where there was none there is none, even if topology
+    /// is free. (With a border it may be, too: but where a triangle goes with all its corners, nobody tells where to.)
     #[test]
     fn no_mix_of_levels_has_a_crack(
         mesh in meshes(),

@@ -6,7 +6,8 @@ use super::MeshError;
 use super::document::{Document, index};
 use crate::bake::read::gltf::Source;
 
-/// The bytes of all buffers and images, one after the other at multiples of 4 bytes; views are moved to where theirs are.
+/// The bytes of all buffers and images, one after the other at multiples of 4 bytes; views are moved to where theirs
+/// are.
 pub(super) fn joined(document: &mut Document, source: &Source<'_>) -> Result<Vec<u8>, MeshError> {
     let (mut bytes, mut starts) = (Vec::new(), Vec::new());
     for buffer in source.buffers()? {

@@ -10,18 +10,18 @@
 //! triangles. Other scenes of the file are left as they are.
 //!
 //! **How**: a node that shows such a mesh stays level 0, with its index and its mesh. Its `MSFT_lod` names new nodes,
-//! placed alike and called `NAME_LOD1` and so on, which are no part of the scene; `extras.MSFT_screencoverage` says from
-//! which coverage on each level is shown. What was measured of a level is in the `extras` of its mesh: `lod_error`,
-//! `lod_hausdorff`, `lod_rms` and `lod_accuracy`. A node that has more to it than a place and a mesh (children, a camera,
-//! extensions, an animation) hands its mesh down to a new child, since all that is below level 0 belongs to it.
-//! `extras.lod_max_distance`, where an author said how far one level is seen, is repeated for each: where the object ends
-//! is the author's to say.
+//! placed alike and called `NAME_LOD1` and so on, which are no part of the scene. From which coverage on each level is
+//! shown is in `extras.MSFT_screencoverage`. What was measured of a level is in the `extras` of its mesh: `lod_error`,
+//! `lod_hausdorff`, `lod_rms` and `lod_accuracy`. A node that has more to it than a place and a mesh (children, a
+//! camera, extensions, an animation) hands its mesh down to a new child, since all that is below level 0 belongs to it.
+//! `extras.lod_max_distance`, where an author said how far one level is seen, is repeated for each level: where the
+//! object ends is the author's to say.
 //!
 //! What an author made is measured as well ([`Scene::authored`]), so that accuracies can be weighed against each other.
 //!
 //! **Chunks**: a mesh much larger than its neighbours is in view near and far at once, and no level of it is right. It
-//! is [split](super::split): each chunk is an object of its own, a child of the node that showed the whole, and fits its
-//! neighbours at every mix of levels. Taken to be so is a mesh that ([`Chunks::Large`])
+//! is [split](mod@super::split): each chunk is an object of its own, a child of the node that showed the whole, and
+//! fits its neighbours at every mix of levels. Taken to be so is a mesh that ([`Chunks::Large`])
 //! - has more than twice as many triangles as a chunk,
 //! - reaches four times as far as half of the objects that are shown beside it, and
 //! - is at least a quarter as large as the whole scene, and so about as large as one sees far.
@@ -225,9 +225,9 @@ impl<'a> Scene<'a> {
         &self.odd
     }
 
-    /// The scene with levels, as GLB, with all buffers in it. `levels` has those of each part, finest first, in the order
-    /// of the parts; a part with no more than one gets none. `authored` has those of each chain of the author's, of whom
-    /// only what was measured is written; it may be empty.
+    /// The scene with levels, as GLB, with all buffers in it. `levels` has those of each part, finest first, in the
+    /// order of the parts; a part with no more than one gets none. `authored` has those of each chain of the author's,
+    /// of whom only what was measured is written; it may be empty.
     ///
     /// # Errors
     /// More or fewer lists than parts; levels that are no meshes, have groups of other names than the part's, or, of a

@@ -11,8 +11,8 @@ use crate::bake::weld::bits;
 type Side = [[u32; 3]; 2];
 
 impl Chunk {
-    /// Whether a level of this chunk fits every level of its neighbours: it has the sides of [`Chunk::border`], as often
-    /// as the chunk has, and no triangle more at any of these edges. O(n log n).
+    /// Whether a level of this chunk fits every level of its neighbours: it has the sides of [`Chunk::border`], as
+    /// often as the chunk has, and no triangle more at any of these edges. O(n log n).
     ///
     /// # Errors
     /// The ends of the first edge at which it has more or fewer triangles.

@@ -1,22 +1,22 @@
 //! Cuts a mesh into chunks that can each have a level of their own, without a crack between them.
 //!
-//! A track or a terrain is in view as a whole, near and far at once, so that no level of it is right. In chunks, what is
-//! near is fine and what is far is coarse. Triangles are never cut: each is in exactly one chunk.
+//! A track or a terrain is in view as a whole, near and far at once, so that no level of it is right. In chunks, what
+//! is near is fine and what is far is coarse. Triangles are never cut: each is in exactly one chunk.
 //!
 //! # Why there is no crack
 //! Positions that several chunks use are *locked* ([`Chunk::locked`]): all levels of all these chunks have them, bit by
 //! bit. That is enough. A level is made by contractions, which take vertices to vertices and triangles to triangles, or
-//! to nothing where corners meet: a simplicial map. Chunks agree about where locked vertices go, namely nowhere; no other
-//! vertex has more than one chunk. So the levels of all chunks, in whatever mix, are the image of the whole mesh under
-//! one simplicial map; and a map of that kind commutes with taking the border (J. Munkres, *Elements of Algebraic
+//! to nothing where corners meet: a simplicial map. Chunks agree about where locked vertices go, namely nowhere; no
+//! other vertex has more than one chunk. So the levels of all chunks, in whatever mix, are the image of the whole mesh
+//! under one simplicial map; and a map of that kind commutes with taking the border (J. Munkres, *Elements of Algebraic
 //! Topology*, 1984, lemma 12.1). The border of every mix is therefore what the mesh's own border has become. A mesh
 //! without border has mixes without border: neither a crack nor a T-junction. Where a mesh has a border, the edges that
-//! chunks share are no part of it and stay as they are, unless an edge of the border is contracted onto one, as it may be
-//! where no topology is preserved.
+//! chunks share are no part of it and stay as they are, unless an edge of the border is contracted onto one, as it may
+//! be where no topology is preserved.
 //!
-//! The same holds of methods that fill holes anew, since a patch has the border of what it replaces. It does not hold of
-//! one that moves or drops locked positions: [`Chunk::check`] looks at a level, whoever made it, and [`open_edges`] at a
-//! mix.
+//! The same holds of methods that fill holes anew, since a patch has the border of what it replaces. It does not hold
+//! of one that moves or drops locked positions: [`Chunk::check`] looks at a level, whoever made it, and [`open_edges`]
+//! at a mix.
 //!
 //! ```
 //! use lod_budget::bake::simplify::{GarlandHeckbert, Simplifier, Target, Task, quietly};
@@ -47,16 +47,16 @@ use super::Mesh;
 /// Into what a mesh is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// The most triangles of a chunk, ≥ 1. Fewer make more draws, and more of their vertices are locked: of a chunk of n
-    /// triangles, some 2·√n edges are on its border and stay.
+    /// The most triangles of a chunk, ≥ 1. Fewer make more draws, and more of their vertices are locked: of a chunk of
+    /// n triangles, some 2·√n edges are on its border and stay.
     pub triangles: usize,
-    /// A part whose longest side is no longer than this share of the mesh's is not cut further, however many triangles it
-    /// has: a statue in a landscape. From 0 to 1.
+    /// A part whose longest side is no longer than this share of the mesh's is not cut further, however many triangles
+    /// it has: a statue in a landscape. From 0 to 1.
     pub share: f32,
 }
 
 impl Default for Options {
-    /// 8192 triangles: with fewer, what draws cost more than what triangles save where a mesh has many materials, as each
+    /// 8192 triangles: with fewer, draws cost more than triangles save where a mesh has many materials, as each of them
     /// is a draw of each chunk. Nothing smaller than a fiftieth.
     fn default() -> Self {
         Self { triangles: 8192, share: 0.02 }

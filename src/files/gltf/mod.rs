@@ -15,8 +15,8 @@
 //! morph target at full weight.
 //!
 //! **Measured levels**: the error of a level, in object units, and its accuracy are what `extras.lod_error` and
-//! `extras.lod_accuracy` of its meshes say, of several the worst. Level 0 is exact (0 and 1) where nothing is said of it
-//! and all coarser levels are known. Otherwise the error is unknown, and accuracy is by
+//! `extras.lod_accuracy` of its meshes say, of several the worst. Level 0 is exact (0 and 1) where nothing is said of
+//! it and all coarser levels are known. Otherwise the error is unknown, and accuracy is by
 //! [`accuracy_of`](crate::table::accuracy_of).
 //!
 //! **Levels**, in this order of precedence:

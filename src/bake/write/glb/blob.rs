@@ -20,7 +20,8 @@ const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
 
 impl Blob {
-    /// What is written after the bytes, views and accessors of a file. Its one buffer must end at a multiple of 4 bytes.
+    /// What is written after the bytes, views and accessors of a file. Its one buffer must end at a multiple of 4
+    /// bytes.
     pub(in crate::bake) fn after(bytes: Vec<u8>, views: Vec<Value>, accessors: Vec<Value>) -> Self {
         Self { bytes, views, accessors }
     }

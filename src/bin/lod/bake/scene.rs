@@ -49,7 +49,8 @@ impl SceneArgs {
         Options { chunks, ..Options::default() }
     }
 
-    /// Whether to bake a file as a scene. One that cannot be read is none: as a mesh it is refused with all the reasons.
+    /// Whether to bake a file as a scene. One that cannot be read is none: as a mesh it is refused with all the
+    /// reasons.
     pub fn means(&self, file: &Path) -> bool {
         if self.one_mesh || Format::guess(&[], &file.to_string_lossy()) != Some(Format::Gltf) {
             return false;
