@@ -50,7 +50,7 @@ proptest! {
 
     #[test]
     fn sheets_stay_sheets_and_keep_their_border(
-        (side, seed, share) in (5..20u32, any::<u32>(), 0.2..1.0f64),
+        (side, seed, share) in (10..20u32, any::<u32>(), 0.2..1.0f64),
     ) {
         let mesh = Mesh::from(terrain(side, seed));
         let task = Task::new(&mesh, Target::triangles((share * mesh.triangles.len() as f64) as usize));

@@ -7,8 +7,8 @@ use std::collections::BinaryHeap;
 /// less than 26 % apart. With fewer buckets the order is too rough, with more there is too little in each.
 const FINE_BITS: u32 = 21;
 
-/// A bucket with more items is taken in their own order, whatever their costs.
-const CROWD: usize = 1024;
+/// A bucket with more items is taken in their own order, whatever their costs. Small meshes never have one.
+const CROWD: usize = 4096;
 
 /// Items in the order of their cost, ties by the lower item, but for buckets of many items whose costs differ little:
 /// those are taken in the order of the items themselves.

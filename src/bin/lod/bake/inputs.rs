@@ -121,7 +121,7 @@ mod tests {
         assert_eq!(named(&["a/rock.obj", "b/tree.ply"]), ["rock", "tree"]);
         assert_eq!(named(&["a/rock.obj", "../b/Rock.obj", "tree.obj"]), ["a-rock", "b-Rock", "tree"]);
         assert_eq!(named(&["a/rock.obj", "a/rock.ply"]), ["a-rock-obj", "a-rock-ply"]);
-        assert_eq!(named(&["a/rock.obj", "b/rock.obj", "a-rock.obj"]), ["a-rock", "b-rock", "a-rock-2"]);
+        assert_eq!(named(&["a/rock.obj", "b/rock.obj", "a-rock.obj"]), ["rock", "b-rock", "a-rock"]);
         assert_eq!(named(&["../x.obj", "../../x.obj"]), ["x", "x-2"]);
     }
 }

@@ -52,12 +52,13 @@ impl Greedy<'_> {
     }
 
     /// A step that changes the topology has a price of its own: quadrics know of planes, and not that a part ends or a
-    /// hole closes.
+    /// hole closes. That pairs without an edge join is what they are for.
     fn price(&self, step: &Step) -> Verdict {
         let Move { kept, gone, .. } = step.way;
         let area = self.areas[kept as usize] + self.areas[gone as usize];
         let price = TOPOLOGY_MOVES * TOPOLOGY_MOVES * area * self.reach(kept).max(self.reach(gone));
-        let is_due = self.choices[kept as usize].cost() >= price || self.is_free;
+        let joins = self.around().edge(kept, gone).next().is_none();
+        let is_due = joins || self.is_free || self.choices[kept as usize].cost() >= price;
         if is_due { Verdict::Yes } else { Verdict::For(price) }
     }
 
