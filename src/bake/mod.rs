@@ -11,6 +11,7 @@
 //! | [`simplify`] | fewer triangles: the methods behind one interface |
 //! | [`shapes`] | meshes to try it on |
 //! | [`deviation`] | how far two surfaces are apart, as a bound that is proved |
+//! | [`mod@write`] | levels as OBJ, as GLB and as pictures |
 
 pub mod deviation;
 pub mod finding;
@@ -21,6 +22,7 @@ pub mod shapes;
 pub mod simplify;
 pub mod surface;
 pub mod weld;
+pub mod write;
 
 pub use finding::{Defect, Finding};
 pub use mesh::{Group, Mesh, Skin};

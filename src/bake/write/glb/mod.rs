@@ -1,0 +1,354 @@
+//! All levels of an object in one GLB (glTF 2.0, binary), and scenes of such objects.
+//!
+//! An object's levels are a *chain*: a mesh each, called `NAME_LOD0`, `NAME_LOD1` and so on. A node that shows a chain
+//! shows its finest level; its `MSFT_lod` names further nodes, placed alike, that show the coarser ones. Those are no
+//! part of the scene, so that a program that does not know the extension draws the finest level alone. The coverage
+//! from which on each level is shown is in `extras.MSFT_screencoverage` of the first node; what was measured is in the
+//! `extras` of a level's mesh: `lod_error`, `lod_hausdorff` and `lod_rms`, in object units.
+//!
+//! Groups of triangles become primitives, each with vertices of its own, a wedge a vertex, and indices of 16 bits where
+//! they will do. A primitive's `extras.name` is its group's name. Materials are names: matt, white, without textures.
+//! Joints and weights are written without a skin, as the specification allows: the mesh rests in its pose until an
+//! engine gives it its skeleton.
+//!
+//! What glTF forbids is put right: normals and tangents become unit vectors, colours lie between 0 and 1, weights are
+//! positive and add up to 1. A wedge without a normal gets that of its first triangle. Where all normals, tangents or
+//! joints of a primitive are missing it goes without. What keeps the rules is written bit by bit. Positions that no
+//! triangle uses are left out; a level without triangles is a node without a mesh. At most eight sets of texture
+//! coordinates are written.
+//!
+//! ```
+//! use lod_budget::bake::write::{Glb, LevelOut, glb::{Node, Transform}};
+//! use lod_budget::bake::{Group, Mesh};
+//!
+//! let rock = Mesh {
+//!     positions: vec![glam::Vec3::ZERO, glam::Vec3::X, glam::Vec3::Y],
+//!     wedges: vec![0, 1, 2],
+//!     triangles: vec![[0, 1, 2]],
+//!     groups: vec![Group { triangles: 0..1, ..Group::default() }],
+//!     ..Mesh::default()
+//! };
+//! let mut scene = Glb::default();
+//! let chain = scene.add_chain("rock", &[LevelOut::new(&rock)])?;
+//! for x in [0.0, 5.0] {
+//!     let transform = Transform::Matrix(glam::Mat4::from_translation(glam::Vec3::X * x));
+//!     scene.add_node(Node { name: "rock".into(), chain: Some(chain), transform, ..Node::default() });
+//! }
+//! let bytes = scene.finish()?;
+//! # Ok::<(), lod_budget::bake::write::GlbError>(())
+//! ```
+
+mod attributes;
+mod blob;
+mod primitive;
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use glam::{Mat4, Quat, Vec3};
+use serde_json::{Map, Value, json};
+
+use self::blob::Blob;
+use super::{LevelOut, Measured};
+use crate::bake::mesh::Mesh;
+
+/// All levels of one object, finest first, called after the finest one's mesh.
+///
+/// # Errors
+/// As [`Glb::add_chain`] and [`Glb::finish`].
+pub fn glb(levels: &[LevelOut<'_>]) -> Result<Vec<u8>, GlbError> {
+    let name = levels.first().map_or("", |level| &level.mesh.name);
+    let mut glb = Glb::default();
+    let chain = glb.add_chain(name, levels)?;
+    glb.add_node(Node { name: name.to_owned(), chain: Some(chain), ..Node::default() });
+    glb.finish()
+}
+
+/// Why something cannot be written. Displayed as `OBJECT: RULE`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GlbError {
+    /// What the file would call it.
+    pub object: String,
+    /// The rule it breaks.
+    pub rule: String,
+}
+
+impl GlbError {
+    fn new(object: impl Into<String>, rule: impl Into<String>) -> Self {
+        Self { object: object.into(), rule: rule.into() }
+    }
+}
+
+impl fmt::Display for GlbError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.object, self.rule)
+    }
+}
+
+impl std::error::Error for GlbError {}
+
+/// A chain of one [`Glb`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChainId(usize);
+
+/// A node of one [`Glb`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NodeId(usize);
+
+/// A place in the scene.
+#[derive(Clone, Debug, Default)]
+pub struct Node {
+    /// `_LOD0` and so on is added where the node shows a chain.
+    pub name: String,
+    /// `None` for a root of the scene.
+    pub parent: Option<NodeId>,
+    /// What it shows.
+    pub chain: Option<ChainId>,
+    /// From its own space to its parent's.
+    pub transform: Transform,
+    /// What else to say of it.
+    pub extras: Map<String, Value>,
+}
+
+/// How a node is placed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Transform {
+    /// Affine, and by the specification a product of translation, rotation and scale.
+    Matrix(Mat4),
+    /// Scale first, translation last.
+    Parts {
+        /// In the parent's units.
+        translation: Vec3,
+        /// Of unit length.
+        rotation: Quat,
+        /// 1 leaves an axis as it is.
+        scale: Vec3,
+    },
+}
+
+impl Default for Transform {
+    fn default() -> Self {
+        Self::Matrix(Mat4::IDENTITY)
+    }
+}
+
+/// A file in the making: first chains, then the nodes that show them.
+#[derive(Debug, Default)]
+pub struct Glb {
+    blob: Blob,
+    materials: Materials,
+    meshes: Vec<Value>,
+    chains: Vec<Chain>,
+    nodes: Vec<Placed>,
+    roots: Vec<usize>,
+}
+
+/// Names, each once, in order of first use.
+#[derive(Debug, Default)]
+struct Materials {
+    names: Vec<String>,
+    known: BTreeMap<String, usize>,
+}
+
+#[derive(Debug)]
+struct Chain {
+    /// Per level its mesh, if it draws anything.
+    meshes: Vec<Option<usize>>,
+    /// Per level, or empty.
+    coverage: Vec<f32>,
+}
+
+/// A node as the file has it, but for its children.
+#[derive(Debug)]
+struct Placed {
+    node: Map<String, Value>,
+    children: Vec<usize>,
+}
+
+impl Glb {
+    /// Adds the levels of an object, finest first. A chain should have a node: readers may take meshes that no node
+    /// shows for levels of others, by their names.
+    ///
+    /// # Errors
+    /// No level; a mesh that does not [check](Mesh::check) or has positions that are infinite or no numbers; coverages
+    /// that only some levels have, rise, are negative or no numbers; more than 4 GiB in all.
+    pub fn add_chain(&mut self, name: &str, levels: &[LevelOut<'_>]) -> Result<ChainId, GlbError> {
+        if levels.is_empty() {
+            return Err(GlbError::new(name, "it must have a level"));
+        }
+        let coverage = coverages(levels).map_err(|rule| GlbError::new(name, rule))?;
+        let mesh = |(i, level)| self.add_mesh(&format!("{name}_LOD{i}"), level);
+        let meshes = levels.iter().enumerate().map(mesh).collect::<Result<_, _>>()?;
+        self.chains.push(Chain { meshes, coverage });
+        Ok(ChainId(self.chains.len() - 1))
+    }
+
+    /// The index of the level's mesh; `None` where it draws nothing.
+    fn add_mesh(&mut self, name: &str, level: &LevelOut<'_>) -> Result<Option<usize>, GlbError> {
+        let refused = |rule| GlbError::new(name, rule);
+        check(level.mesh).map_err(refused)?;
+        let mut primitives = Vec::new();
+        for group in level.mesh.groups.iter().filter(|group| !group.triangles.is_empty()) {
+            let material = group.material.as_ref().map(|name| self.materials.index(name));
+            primitives.push(primitive::add(&mut self.blob, level.mesh, group, material));
+            self.blob.check().map_err(|rule| refused(rule.to_owned()))?;
+        }
+        if primitives.is_empty() {
+            return Ok(None);
+        }
+        let mut mesh = object(json!({ "name": name, "primitives": primitives }));
+        mesh.extend(level.measured.map(|measured| ("extras".to_owned(), extras(&measured))));
+        self.meshes.push(Value::Object(mesh));
+        Ok(Some(self.meshes.len() - 1))
+    }
+
+    /// Adds a node, and those of the coarser levels of what it shows.
+    ///
+    /// # Panics
+    /// Where its parent or chain is of another file.
+    pub fn add_node(&mut self, node: Node) -> NodeId {
+        let id = self.nodes.len();
+        match node.parent {
+            Some(parent) => self.nodes[parent.0].children.push(id),
+            None => self.roots.push(id),
+        }
+        match node.chain {
+            Some(chain) => self.add_levels(&node, chain.0),
+            None => self.push_node(&node, &node.name),
+        }
+        let mut extras = self.nodes[id].node.remove("extras").map(object).unwrap_or_default();
+        extras.extend(node.extras);
+        if !extras.is_empty() {
+            self.nodes[id].node.insert("extras".to_owned(), Value::Object(extras));
+        }
+        NodeId(id)
+    }
+
+    fn add_levels(&mut self, node: &Node, chain: usize) {
+        let head = self.nodes.len();
+        for level in 0..self.chains[chain].meshes.len() {
+            let mesh = self.chains[chain].meshes[level];
+            self.push_node(node, &format!("{}_LOD{level}", node.name));
+            let mesh = mesh.map(|mesh| ("mesh".to_owned(), json!(mesh)));
+            self.nodes[head + level].node.extend(mesh);
+        }
+        let coarser: Vec<usize> = (head + 1..self.nodes.len()).collect();
+        let coverage = &self.chains[chain].coverage;
+        let head = &mut self.nodes[head].node;
+        if !coarser.is_empty() {
+            head.insert("extensions".to_owned(), json!({ "MSFT_lod": { "ids": coarser } }));
+        }
+        if !coverage.is_empty() {
+            head.insert("extras".to_owned(), json!({ "MSFT_screencoverage": coverage }));
+        }
+    }
+
+    fn push_node(&mut self, node: &Node, name: &str) {
+        let mut placed = node.transform.parts();
+        placed.insert("name".to_owned(), json!(name));
+        self.nodes.push(Placed { node: placed, children: Vec::new() });
+    }
+
+    /// The file.
+    ///
+    /// # Errors
+    /// More than 4 GiB in all, which is as much as a GLB can have.
+    pub fn finish(self) -> Result<Vec<u8>, GlbError> {
+        let has_levels = self.chains.iter().any(|chain| chain.meshes.len() > 1);
+        let materials = self.materials.names.iter().map(|name| material(name)).collect();
+        let nodes = self.nodes.into_iter().map(Placed::finished).collect();
+        let (views, accessors, bytes) = self.blob.into_parts();
+        let mut root = object(json!({
+            "asset": { "version": "2.0", "generator": "lod-budget" },
+            "scene": 0,
+            "scenes": [if self.roots.is_empty() { json!({}) } else { json!({ "nodes": self.roots }) }],
+        }));
+        let lists = [
+            ("accessors", accessors),
+            ("bufferViews", views),
+            ("buffers", blob::buffers(&bytes)),
+            ("extensionsUsed", if has_levels { vec![json!("MSFT_lod")] } else { Vec::new() }),
+            ("materials", materials),
+            ("meshes", self.meshes),
+            ("nodes", nodes),
+        ];
+        let full = lists.into_iter().filter(|(_, list)| !list.is_empty());
+        root.extend(full.map(|(name, list)| (name.to_owned(), Value::Array(list))));
+        blob::packed(&Value::Object(root).to_string(), bytes).map_err(|rule| GlbError::new("the file", rule))
+    }
+}
+
+impl Materials {
+    fn index(&mut self, name: &str) -> usize {
+        if let Some(&known) = self.known.get(name) {
+            return known;
+        }
+        self.names.push(name.to_owned());
+        self.known.insert(name.to_owned(), self.names.len() - 1);
+        self.names.len() - 1
+    }
+}
+
+impl Placed {
+    fn finished(mut self) -> Value {
+        if !self.children.is_empty() {
+            self.node.insert("children".to_owned(), json!(self.children));
+        }
+        Value::Object(self.node)
+    }
+}
+
+impl Transform {
+    /// The parts that are not as they are anyway.
+    fn parts(self) -> Map<String, Value> {
+        let all = match self {
+            Self::Matrix(m) => vec![("matrix", m != Mat4::IDENTITY, json!(m.to_cols_array()))],
+            Self::Parts { translation, rotation, scale } => vec![
+                ("translation", translation != Vec3::ZERO, json!(translation.to_array())),
+                ("rotation", rotation != Quat::IDENTITY, json!(rotation.to_array())),
+                ("scale", scale != Vec3::ONE, json!(scale.to_array())),
+            ],
+        };
+        let telling = all.into_iter().filter(|&(_, tells, _)| tells);
+        telling.map(|(name, _, value)| (name.to_owned(), value)).collect()
+    }
+}
+
+/// Per level, or empty where no level has one.
+fn coverages(levels: &[LevelOut<'_>]) -> Result<Vec<f32>, &'static str> {
+    let coverage: Vec<f32> = levels.iter().filter_map(|level| level.coverage).collect();
+    if !coverage.is_empty() && coverage.len() < levels.len() {
+        return Err("all of its levels must have a coverage, or none");
+    }
+    if coverage.iter().any(|&c| !c.is_finite() || c < 0.0) || !coverage.is_sorted_by(|a, b| a >= b) {
+        return Err("its coverages must be finite, not be below 0, and not rise from level to level");
+    }
+    Ok(coverage)
+}
+
+fn check(mesh: &Mesh) -> Result<(), String> {
+    mesh.check()?;
+    let corners = mesh.triangles.as_flattened().iter().map(|&w| mesh.wedges[w as usize]);
+    match corners.into_iter().find(|&p| !mesh.positions[p as usize].is_finite()) {
+        Some(position) => Err(format!("position {position} must be finite")),
+        None => Ok(()),
+    }
+}
+
+fn extras(measured: &Measured) -> Value {
+    let &Measured { error, hausdorff, rms } = measured;
+    json!({ "lod_error": f64::from(error), "lod_hausdorff": hausdorff, "lod_rms": rms })
+}
+
+/// Matt and white: without a word glTF means bare metal.
+fn material(name: &str) -> Value {
+    json!({ "name": name, "pbrMetallicRoughness": { "metallicFactor": 0 } })
+}
+
+/// The members of what is known to be an object.
+fn object(value: Value) -> Map<String, Value> {
+    match value {
+        Value::Object(map) => map,
+        _ => Map::new(),
+    }
+}

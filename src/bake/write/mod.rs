@@ -1,0 +1,42 @@
+//! What a bake leaves behind: [`obj()`] for a level by itself, [`mod@glb`] for all levels of an object or a scene, and
+//! [`sheet`] for people.
+//!
+//! Everything is made in memory; whoever asks for it puts it on disk. The same meshes give the same bytes.
+
+pub mod glb;
+pub mod obj;
+pub mod sheet;
+
+pub use glb::{Glb, GlbError, glb};
+pub use obj::obj;
+
+use super::Mesh;
+
+/// A level as it is written.
+#[derive(Clone, Copy, Debug)]
+pub struct LevelOut<'a> {
+    /// What it draws, which may be nothing.
+    pub mesh: &'a Mesh,
+    /// `None` where nobody measured it.
+    pub measured: Option<Measured>,
+    /// The share of the image, ≥ 0, from which on the level is shown, as `MSFT_screencoverage` has it.
+    pub coverage: Option<f32>,
+}
+
+impl<'a> LevelOut<'a> {
+    /// A level of which nothing is known but its mesh.
+    pub fn new(mesh: &'a Mesh) -> Self {
+        Self { mesh, measured: None, coverage: None }
+    }
+}
+
+/// How far a level is from level 0, in object units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measured {
+    /// The greatest bound of this and all finer levels: what the runtime projects.
+    pub error: f32,
+    /// The proved bound on the Hausdorff distance of this level.
+    pub hausdorff: f64,
+    /// The root mean square distance.
+    pub rms: f64,
+}
