@@ -30,19 +30,29 @@ mod building;
 mod city;
 mod dice;
 mod draft;
+mod festival;
 mod film;
+mod foliage;
 mod forest;
 mod indoors;
 mod kind;
+mod model;
 mod outdoors;
+mod place;
 mod scatter;
-mod shape;
+mod solid;
+mod street;
+mod structure;
 mod urban;
 
 use std::fmt;
 
 use crate::files::{CameraPath, Scene};
 
+use draft::Draft;
+use kind::Kind;
+
+pub use model::{Class, Model};
 pub use scatter::{scatter, scatter_path};
 
 /// A scene that can be made from a seed. The same seed gives the same scene and the same path on every platform, to
@@ -86,10 +96,19 @@ impl Recipe {
 
     /// Makes the scene.
     pub fn scene(self, seed: u64) -> Scene {
+        self.draft(seed).finish()
+    }
+
+    /// The finest levels of the kinds of object that are in it, in the order of their tables. No seed changes them.
+    pub fn models(self) -> Vec<Model> {
+        self.draft(0).kinds().iter().map(Kind::model).collect()
+    }
+
+    fn draft(self, seed: u64) -> Draft {
         match self {
-            Self::Building => building::scene(seed),
-            Self::City => city::scene(seed),
-            Self::Forest => forest::scene(seed),
+            Self::Building => building::draft(seed),
+            Self::City => city::draft(seed),
+            Self::Forest => forest::draft(seed),
         }
     }
 
