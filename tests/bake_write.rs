@@ -246,7 +246,10 @@ proptest! {
     /// Whatever a mesh has, glTF's rules hold of what is written.
     #[test]
     fn attributes_keep_the_rules(
-        rows in prop::collection::vec(prop::array::uniform8(prop_oneof![Just(0.0), Just(f32::NAN), Just(f32::MAX), -2.0..2.0f32]), 3..12),
+        rows in prop::collection::vec(
+            prop::array::uniform8(prop_oneof![Just(0.0), Just(f32::NAN), Just(f32::MAX), -2.0..2.0f32]),
+            3..12,
+        ),
         joints in prop::array::uniform4(0..2_u16),
     ) {
         let wedges: Vec<u32> = (0..rows.len() as u32).collect();
@@ -327,6 +330,9 @@ fn indices_are_wide_from_65536_vertices_on() {
 
 #[test]
 fn what_cannot_be_written_is_named() {
+    let nowhere = Node { name: "n".into(), transform: Transform::Matrix(Mat4::NAN), ..Node::default() };
+    let refused = Glb::default().add_node(nowhere).expect_err("refused");
+    assert_eq!(refused.to_string(), "n: its transform must be finite");
     let refusal = |levels: &[LevelOut]| glb(levels).expect_err("refused").to_string();
     assert_eq!(refusal(&[]), ": it must have a level");
     let mut broken = square(0.0);
@@ -383,12 +389,13 @@ fn scene() -> Vec<u8> {
         rotation: Quat::from_rotation_y(1.0),
         scale: Vec3::splat(2.0),
     };
-    let group = glb.add_node(Node { name: "group".into(), transform: parts, ..Node::default() });
+    let mut add = |node: Node| glb.add_node(node).expect("added");
+    let group = add(Node { name: "group".into(), transform: parts, ..Node::default() });
     let moved = Transform::Matrix(Mat4::from_translation(Vec3::Y));
     let extras = serde_json::Map::from_iter([("tag".to_owned(), serde_json::json!(7))]);
-    glb.add_node(Node { name: "a".into(), parent: Some(group), chain: Some(pair), transform: moved, extras });
-    glb.add_node(Node { name: "a".into(), chain: Some(pair), ..Node::default() });
-    glb.add_node(Node { name: "b".into(), chain: Some(alone), transform: moved, ..Node::default() });
+    add(Node { name: "a".into(), parent: Some(group), chain: Some(pair), transform: moved, extras });
+    add(Node { name: "a".into(), chain: Some(pair), ..Node::default() });
+    add(Node { name: "b".into(), chain: Some(alone), transform: moved, ..Node::default() });
     glb.finish().expect("written")
 }
 

@@ -99,7 +99,7 @@ fn gltf(triangles: u32) -> String {
 fn every_command_says_how_it_is_used() {
     let room = Room::new();
     assert_eq!(room.done("--version"), concat!("lod ", env!("CARGO_PKG_VERSION"), "\n"));
-    for command in ["", "compare", "inspect", "solve", "generate"] {
+    for command in ["", "compare", "bake", "inspect", "solve", "generate"] {
         let help = room.done(&format!("{command} --help"));
         let examples = help.split("Examples:\n").nth(1).unwrap_or_else(|| panic!("{command}: {help}"));
         assert!(examples.contains(&format!("lod {command}")), "{help}");
@@ -577,4 +577,292 @@ fn nothing_in_view_is_no_reason_to_fail() {
         assert!(POLICY_KEYS[2..].iter().all(|key| policy[key].is_f64()), "{policy}");
     }
     assert!(room.read("out/report.html").contains("void"));
+}
+
+// -- bake
+
+/// A hilly field of 2 · `side`² triangles, as OBJ.
+fn field(side: u32) -> String {
+    let corner = |i: u32| {
+        let (x, z) = (i % (side + 1), i / (side + 1));
+        format!("v {x} {} {z}\n", f64::from(x * x + 3 * z + x * z % 7).sin())
+    };
+    let face = |i: u32| {
+        let a = 1 + i % side + i / side * (side + 1);
+        let (b, c) = (a + 1, a + side + 1);
+        format!("f {a} {c} {b}\nf {b} {c} {}\n", c + 1)
+    };
+    let corners = (0..(side + 1) * (side + 1)).map(corner);
+    corners.chain((0..side * side).map(face)).collect()
+}
+
+/// A room with a mesh of 128 triangles, `field.obj`.
+fn meadow() -> Room {
+    let room = Room::new();
+    room.put("field.obj", field(8));
+    room
+}
+
+/// All files of a folder and below, by name.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            files.extend(self::files(&path));
+        } else {
+            files.insert(path.clone(), fs::read(&path).expect("a file"));
+        }
+    }
+    files
+}
+
+#[test]
+fn a_bake_has_every_key_and_every_file_it_names() {
+    let room = meadow();
+    let baked = room.json("bake field.obj --levels 4 --json");
+    let mesh = &baked["meshes"][0];
+    assert_eq!((mesh["input"].as_str(), mesh["method"].as_str()), (Some("field.obj"), Some("quadric")));
+    assert!(mesh["seconds"].as_f64() > Some(0.0) && mesh["measure_seconds"].as_f64() > Some(0.0));
+    let levels = mesh["levels"].as_array().expect("levels");
+    let triangles: Vec<_> = levels.iter().map(|level| level["triangles"].as_u64()).collect();
+    assert_eq!(triangles, [Some(128), Some(64), Some(32), Some(16)]);
+    for (i, level) in levels.iter().enumerate() {
+        let number = |key: &str| level[key].as_f64().unwrap_or_else(|| panic!("{key} of {level}"));
+        assert_eq!(number("level"), i as f64);
+        assert!(number("rms") <= number("hausdorff") && number("hausdorff") <= number("error"));
+        assert!(number("attained") <= number("hausdorff") && number("bytes") > 0.0);
+        let text = room.read(level["file"].as_str().expect("a file"));
+        let lines = |kind: &str| text.lines().filter(|line| line.starts_with(kind)).count() as f64;
+        assert_eq!((lines("f "), lines("v ")), (number("triangles"), number("vertices")));
+    }
+    let table = room.path(mesh["table_file"].as_str().expect("a table"));
+    let scene = room.path(mesh["scene_file"].as_str().expect("a scene"));
+    let [table, scene] = [table, scene].map(|file| Scene::read(&file).expect("it can be read"));
+    assert_eq!((table.objects.len(), scene.objects.len()), (0, 1));
+    let [table, scene] = [&table, &scene].map(|scene| scene.tables[0].levels());
+    for ((row, table), scene) in levels.iter().zip(table).zip(scene) {
+        assert_eq!(table.error.map(f64::from), row["error"].as_f64());
+        assert_eq!((table.triangles, table.vertices), (scene.triangles, scene.vertices));
+        let sizes = [table, scene].map(|level| level.min_size.expect("a size"));
+        assert!((sizes[0] - sizes[1]).abs() <= 1e-5 * sizes[0], "{sizes:?}");
+    }
+    assert!(room.read(mesh["sheet_file"].as_str().expect("a sheet")).contains("<svg"));
+    assert_eq!(baked["failed"].as_array().map(Vec::len), Some(0));
+}
+
+#[test]
+fn the_levels_are_those_that_were_asked_for() {
+    let room = meadow();
+    let bake = |options: &str| {
+        room.json(&format!("bake field.obj --format json --json {options}"))["meshes"][0].clone()
+    };
+    let triangles = |mesh: &Value| -> Vec<u64> {
+        mesh["levels"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .filter_map(|level| level["triangles"].as_u64())
+            .collect()
+    };
+    assert_eq!(triangles(&bake("--levels 1")), [128]);
+    assert_eq!(triangles(&bake("--ratios 0.5,0.125")), [128, 64, 16]);
+    assert_eq!(triangles(&bake("--triangles 100,90")), [128, 100, 90]);
+    let by_error = bake("--errors 2%,5%");
+    let most = by_error["diagonal"].as_f64().expect("a diagonal") * 0.05;
+    let levels = by_error["levels"].as_array().expect("levels");
+    assert!(levels.len() > 1 && levels.iter().all(|level| level["hausdorff"].as_f64() <= Some(most)));
+    assert!(levels.iter().all(|level| level["file"].is_null()) && by_error["scene_file"].is_null());
+    let vista = bake("--preset vista --accuracy triangles");
+    assert_eq!((vista["preset"].as_str(), &triangles(&vista)[..2]), (Some("vista"), &[128, 32][..]));
+    let accuracy = vista["levels"][1]["accuracy"].as_f64().expect("an accuracy");
+    assert!((accuracy - (1.0 - 0.5 / 32.0)).abs() < 1e-6);
+}
+
+#[test]
+fn a_bake_that_makes_no_sense_is_refused_before_anything_is_done() {
+    let room = meadow();
+    room.refused("bake", &["MESH"]);
+    room.refused("bake field.obj --levels 0", &["1 to 254", "0"]);
+    room.refused("bake field.obj --levels 300", &["1 to 254", "300"]);
+    room.refused("bake field.obj --ratios 0.25,0.5", &["shares", "fall"]);
+    room.refused("bake field.obj --ratios 2", &["between 0 and 1"]);
+    room.refused("bake field.obj --triangles 0", &["at least 1"]);
+    room.refused("bake field.obj --errors 5,-1", &["-1", "positive"]);
+    room.refused("bake field.obj --errors NaN%", &["NaN", "positive"]);
+    room.refused("bake field.obj --levels 3 --ratios 0.5", &["--levels", "--ratios"]);
+    room.refused("bake field.obj --jobs 0", &["--jobs"]);
+    room.refused("bake field.obj --preset castle", &["castle", "vista"]);
+    room.refused("bake field.obj --method magic", &["magic", "quadric"]);
+    room.refused("bake field.obj --format dae", &["dae", "glb"]);
+    assert!(!room.path("baked").exists());
+}
+
+#[test]
+fn a_bad_mesh_among_good_ones_is_named_and_the_others_are_baked() {
+    let room = meadow();
+    room.put("bad.obj", "v 0 0 0\nf 1 2 3\n").put("flat.obj", "v 1 1 1\n").put("notes.txt", "mow the field");
+    room.put("packed.ply", [0x1f, 0x8b, 8, 0]);
+    let output = room.run("bake bad.obj field.obj flat.obj notes.txt packed.ply gone.ply *.stl --json");
+    assert_eq!(output.status.code(), Some(2));
+    let printed: Value = serde_json::from_slice(&output.stdout).expect("one object");
+    assert_eq!(printed["meshes"].as_array().map(Vec::len), Some(1));
+    assert_eq!(printed["meshes"][0]["input"], "field.obj");
+    assert!(room.path("baked/field/field.glb").exists());
+    let errors = text(&output.stderr);
+    let expected = [
+        ["bad.obj", "line 2"],
+        ["flat.obj", "triangle"],
+        ["notes.txt", ".obj"],
+        ["packed.ply", "gzip"],
+        ["gone.ply", "cannot be read"],
+        ["*.stl", "no file matches"],
+    ];
+    for [file, rule] in expected {
+        let line = errors.lines().find(|line| line.starts_with(&format!("lod: {file}: ")));
+        assert!(line.is_some_and(|line| line.contains(rule)), "{file}: {errors}");
+    }
+    assert_eq!(errors.lines().count(), expected.len());
+    assert_eq!(fs::read_dir(room.path("baked")).expect("the folder").count(), 1);
+}
+
+#[test]
+fn what_was_baked_before_is_kept_as_long_as_it_is_the_same() {
+    let room = meadow();
+    let bake = |options: &str| {
+        room.json(&format!("bake field.obj --levels 3 --json {options}"))["meshes"][0].clone()
+    };
+    let first = bake("");
+    assert_eq!(first["status"], "baked");
+    let before = files(&room.path("baked"));
+    let mut again = bake("");
+    assert_eq!(again["status"], "kept");
+    again["status"] = "baked".into();
+    assert_eq!((again, files(&room.path("baked"))), (first, before));
+    assert_eq!(bake("--force")["status"], "baked");
+    assert_eq!(bake("--accuracy hausdorff")["status"], "baked", "another setting");
+    assert_eq!(bake("")["status"], "baked", "the first setting again");
+    let level = room.path("baked/field/field_LOD1.obj");
+    fs::write(&level, "v 0 0 0").expect("damaged");
+    assert_eq!(bake("")["status"], "baked", "a damaged output");
+    fs::remove_file(&level).expect("removed");
+    assert_eq!(bake("")["status"], "baked", "a missing output");
+    room.put("field.obj", field(6));
+    assert_eq!(bake("")["status"], "baked", "another mesh");
+    assert_eq!(bake("")["status"], "kept");
+    room.put("baked/field/field.bake.json", "{");
+    assert_eq!(bake("")["status"], "baked", "a broken record");
+}
+
+#[test]
+fn outputs_that_are_no_longer_made_go_and_other_files_stay() {
+    let room = meadow();
+    room.done("bake field.obj --levels 4");
+    room.put("baked/field/field_LOD9.txt", "mine");
+    room.done("bake field.obj --levels 2 --format obj");
+    let left: Vec<_> = files(&room.path("baked"))
+        .into_keys()
+        .filter_map(|file| file.file_name().map(|n| n.to_owned()))
+        .collect();
+    assert_eq!(left, ["field.bake.json", "field_LOD0.obj", "field_LOD1.obj", "field_LOD9.txt"]);
+}
+
+#[test]
+fn meshes_of_one_name_do_not_meet() {
+    let room = meadow();
+    for folder in ["a", "b"] {
+        fs::create_dir(room.path(folder)).expect("a folder");
+    }
+    room.put("a/rock.obj", field(4)).put("b/rock.obj", field(5));
+    let baked = room.json("bake a/rock.obj b/rock.obj --json --levels 2 --format obj");
+    let files: Vec<_> =
+        [0, 1].map(|i| baked["meshes"][i]["levels"][0]["file"].as_str().unwrap_or("").to_owned()).to_vec();
+    assert_eq!(files.iter().map(|file| room.read(file).matches("f ").count()).collect::<Vec<_>>(), [32, 50]);
+    room.done("bake a/rock.obj --levels 2");
+    room.refused("bake b/rock.obj --levels 2", &["b/rock.obj", "a/rock.obj", "--out", "--force"]);
+    room.done("bake b/rock.obj --levels 2 --out elsewhere");
+    room.done("bake b/rock.obj --levels 2 --force");
+}
+
+#[test]
+fn a_bake_replaces_no_file_that_it_reads() {
+    let room = meadow();
+    fs::create_dir_all(room.path("baked/field")).expect("a folder");
+    room.put("baked/field/field_LOD0.obj", field(3)).put("baked/field/field.obj", field(3));
+    let before = files(&room.path("baked"));
+    let output = room.run("bake field.obj baked/field/field_LOD0.obj --out baked/field/.. --levels 1");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).starts_with("lod: field.obj: "), "{}", text(&output.stderr));
+    assert!(before.iter().all(|(file, bytes)| fs::read(file).ok().as_ref() == Some(bytes)));
+}
+
+#[test]
+fn patterns_and_folders_stand_for_their_meshes() {
+    let room = meadow();
+    fs::create_dir(room.path("props")).expect("a folder");
+    room.put("props/b.obj", field(2)).put("props/a.obj", field(3)).put("props/read.me", "not a mesh");
+    let inputs = |line: &str| -> Vec<String> {
+        let baked = room.json(&format!("bake {line} --json --levels 1 --format json"));
+        let inputs = baked["meshes"].as_array().into_iter().flatten();
+        inputs.filter_map(|mesh| Some(mesh["input"].as_str()?.replace('\\', "/"))).collect()
+    };
+    assert_eq!(inputs("props/*.obj"), ["props/a.obj", "props/b.obj"]);
+    assert_eq!(inputs("props"), ["props/a.obj", "props/b.obj"]);
+    assert_eq!(inputs("props/b.obj props/?.obj field.obj"), ["props/b.obj", "props/a.obj", "field.obj"]);
+    fs::create_dir(room.path("none")).expect("a folder");
+    room.refused("bake none", &["none", "no mesh"]);
+}
+
+#[test]
+fn the_number_of_jobs_changes_nothing() {
+    let room = meadow();
+    for side in 2..8 {
+        room.put(&format!("m{side}.obj"), field(side));
+    }
+    let bake = |jobs: u32| {
+        let mut baked = room.json(&format!("bake m*.obj --jobs {jobs} --out jobs{jobs} --json"));
+        for mesh in baked["meshes"].as_array_mut().expect("meshes") {
+            for key in ["seconds", "measure_seconds"] {
+                mesh[key] = 0.into();
+            }
+        }
+        baked.to_string().replace(&format!("jobs{jobs}"), "jobs")
+    };
+    assert_eq!(bake(1), bake(3));
+    let made = |folder: &str| {
+        let files = files(&room.path(folder)).into_iter();
+        let files = files.filter(|(file, _)| !file.to_string_lossy().ends_with(".bake.json"));
+        files.map(|(_, bytes)| bytes).collect::<Vec<_>>()
+    };
+    assert_eq!(made("jobs1"), made("jobs3"));
+}
+
+#[test]
+fn a_bake_in_words_has_a_row_per_level_or_per_mesh() {
+    let room = meadow();
+    room.put("broken.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 7 7 7\nf 1 2 3\n");
+    let few = room.done("bake field.obj broken.obj --levels 3");
+    let rows: Vec<&str> = few.lines().take_while(|line| !line.is_empty()).collect();
+    assert_eq!(rows.len(), 2 + 3 + 1, "{few}");
+    assert!(rows[0].contains("Hausdorff") && few.contains("1 positions without a face, left out"), "{few}");
+    assert!(few.contains("2 meshes baked"), "{few}");
+    assert!(room.done("bake field.obj broken.obj --levels 3").contains("2 kept"));
+    for side in 1..10 {
+        room.put(&format!("m{side}.obj"), field(side));
+    }
+    let many = room.done("bake m*.obj --format json");
+    assert_eq!(many.lines().take_while(|line| !line.is_empty()).count(), 2 + 9, "{many}");
+}
+
+#[test]
+fn a_baked_table_is_inspected_and_compared() {
+    let room = meadow();
+    room.done("bake field.obj --levels 3");
+    let words = room.done("inspect baked/field/field.json");
+    assert!(words.contains("3 levels") && words.contains("level 2: 32 triangles"), "{words}");
+    let inspected = room.json("inspect baked/field/field.json --json");
+    assert_eq!(inspected["library"][0]["levels"].as_array().map(Vec::len), Some(3));
+    room.put("walk.csv", PATH);
+    let compared = room.json("compare baked/field/field.glb --path walk.csv --policies static,finest --json");
+    assert_eq!(compared["policies"].as_array().map(Vec::len), Some(2));
 }

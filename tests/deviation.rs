@@ -2,6 +2,7 @@
 #![cfg(feature = "bake")]
 
 use glam::{DVec3, Quat, Vec3};
+use lod_budget::bake::deviation::silhouette::{self, SilhouetteDeviation};
 use lod_budget::bake::deviation::{Deviation, DeviationError, Flaw, Options, Ruler, deviation, running_max};
 use lod_budget::bake::surface::Surface;
 use proptest::prelude::*;
@@ -344,6 +345,100 @@ fn a_search_that_is_cut_short_still_bounds() {
     assert!(short.hausdorff >= whole.attained && short.attained <= whole.hausdorff, "{short:?} {whole:?}");
 }
 
+// -- silhouettes
+
+fn silhouettes(a: &Surface, b: &Surface, resolution: usize) -> SilhouetteDeviation {
+    let found = silhouette::deviation(a, b, &silhouette::Options { resolution }).expect("two surfaces");
+    let back = silhouette::deviation(b, a, &silhouette::Options { resolution }).expect("two surfaces");
+    assert_eq!(found.views.len(), silhouette::DIRECTIONS.len());
+    for (view, other) in found.views.iter().zip(&back.views) {
+        assert_eq!((view.distance, view.areas), (other.distance, [other.areas[1], other.areas[0]]));
+    }
+    found
+}
+
+fn moved(mesh: &Surface, place: impl Fn(Vec3) -> Vec3) -> Surface {
+    surface(mesh.positions.iter().map(|&p| place(p)).collect(), mesh.triangles.clone())
+}
+
+#[test]
+fn the_silhouette_of_a_larger_sphere_is_larger_all_round() {
+    let ball = sphere(40);
+    for (scale, resolution) in [(1.05_f32, 512), (0.8, 512), (1.3, 100)] {
+        let found = silhouettes(&ball, &moved(&ball, |p| p * scale), resolution);
+        let expected = f64::from(scale - 1.0).abs();
+        for view in &found.views {
+            assert!((view.distance - expected).abs() <= view.error, "{view:?}");
+            assert!(view.error < 5.0 * f64::from(scale.max(1.0)) / resolution as f64, "{view:?}");
+            assert!(is_near(view.areas[0], std::f64::consts::PI, 0.02), "{view:?}");
+        }
+        let change = found.area_change().expect("it covers something");
+        assert!((change - (f64::from(scale).powi(2) - 1.0)).abs() < 0.01, "{change}");
+    }
+}
+
+#[test]
+fn a_plate_that_is_shifted_is_seen_to_be_shifted_where_that_shows() {
+    let plate = field(4, |_, _| 0.0);
+    let found = silhouettes(&plate, &moved(&plate, |p| p + Vec3::new(0.25, 0.0, 0.0)), 512);
+    for (view, direction) in found.views.iter().zip(silhouette::DIRECTIONS) {
+        // What is left of the shift across the direction, if it is across an edge, or less.
+        let across = 0.25 * direction.normalize().cross(DVec3::X).length();
+        assert!(view.distance <= across + view.error, "{view:?} {direction}");
+        if direction.y == 0.0 {
+            assert!((view.distance - across).abs() <= view.error, "{view:?} {direction}");
+        }
+    }
+    assert!((found.distance() - 0.25).abs() <= found.error() && found.error() < 0.25 * 0.02);
+    assert!(found.area_change().expect("it covers something").abs() < 0.01);
+}
+
+#[test]
+fn what_covers_less_is_said_to_cover_less() {
+    let leaves = field(16, |_, _| 0.0);
+    let mut fewer = leaves.clone();
+    let mut kept = (0..).map(|i| i % 4 != 0);
+    fewer.triangles.retain(|_| kept.next() == Some(true));
+    let change = silhouettes(&leaves, &fewer, 512).area_change().expect("it covers something");
+    assert!((change + 0.25).abs() < 0.02, "{change}");
+    // Seen from the side a plate covers nothing, but is there.
+    let line = field(1, |_, _| 0.0);
+    let lifted = silhouettes(&line, &moved(&line, |p| p + Vec3::Z), 256);
+    assert!((lifted.views[0].distance - 1.0).abs() <= lifted.views[0].error, "{:?}", lifted.views[0]);
+}
+
+/// A hole's radius is what closing it changes, and no more.
+#[test]
+fn a_hole_that_closes_counts_by_its_size() {
+    let whole = field(20, |_, _| 0.0);
+    let mut holed = whole.clone();
+    holed.triangles.retain(|t| {
+        t.iter()
+            .any(|&i| (whole.positions[i as usize] - Vec3::new(0.5, 0.5, 0.0)).abs().max_element() > 0.101)
+    });
+    let view = silhouettes(&whole, &holed, 512).views[2];
+    assert!((view.distance - 0.1).abs() <= view.error, "{view:?}");
+}
+
+#[test]
+fn points_segments_and_nothing_have_silhouettes_too() {
+    let at = |p: Vec3| surface(vec![p], vec![[0, 0, 0]]);
+    let found = silhouettes(&at(Vec3::ZERO), &at(Vec3::new(3.0, 4.0, 0.0)), 64);
+    assert!((found.views[2].distance - 5.0).abs() <= found.views[2].error, "{:?}", found.views[2]);
+    assert_eq!(silhouettes(&at(Vec3::ONE), &at(Vec3::ONE), 64).distance(), 0.0);
+    assert_eq!(silhouettes(&at(Vec3::ONE), &at(Vec3::ONE), 64).area_change(), None);
+    let huge = silhouettes(&at(Vec3::splat(-3e38)), &at(Vec3::splat(3e38)), 64);
+    assert!(huge.distance().is_finite() && (huge.distance() - 6e38 * 3.0_f64.sqrt()).abs() <= huge.error());
+    let options = silhouette::Options::default();
+    let (none, one) = (Surface::default(), at(Vec3::ONE));
+    assert_eq!(silhouette::deviation(&none, &none, &options), Ok(SilhouetteDeviation::default()));
+    assert_eq!(silhouette::deviation(&none, &one, &options), Err(DeviationError::OneIsEmpty));
+    let refused = silhouette::deviation(&one, &one, &silhouette::Options { resolution: 8 });
+    assert!(matches!(refused, Err(DeviationError::Options(_))));
+    let stray = surface(vec![Vec3::NAN, Vec3::ONE], vec![[1, 1, 1]]);
+    assert_eq!(silhouettes(&stray, &one, 64).distance(), 0.0);
+}
+
 // -- against brute force
 
 fn soup(most: usize) -> impl Strategy<Value = Surface> {
@@ -388,6 +483,25 @@ proptest! {
     #[test]
     fn surfaces_that_resemble_each_other_are_bounded((a, b) in resembling()) {
         holds_against_brute_force(&a, &b);
+    }
+
+    /// A shadow moves no farther than what casts it; and points of either surface, seen from a direction, are no
+    /// farther from the other silhouette than is said.
+    #[test]
+    fn silhouettes_are_bounded_by_the_surfaces_and_hold_against_brute_force(a in soup(8), b in soup(8)) {
+        let found = silhouettes(&a, &b, 128);
+        prop_assert!(found.distance() <= measured(&a, &b).hausdorff + found.error());
+        for (view, direction) in found.views.iter().zip(silhouette::DIRECTIONS) {
+            let along = direction.normalize();
+            let flat = |mesh: &Surface| corners(mesh).into_iter().map(|t| t.map(|p| p - along * p.dot(along)));
+            let [first, second]: [Vec<[DVec3; 3]>; 2] = [flat(&a).collect(), flat(&b).collect()];
+            let far = |from: &[[DVec3; 3]], to: &[[DVec3; 3]]| {
+                let points = from.iter().flat_map(|&t| lattice(t, 6));
+                points.map(|p| to_surface(p, to)).fold(0.0, f64::max)
+            };
+            let least = far(&first, &second).max(far(&second, &first));
+            prop_assert!(view.distance >= least - view.error, "{view:?} {least}");
+        }
     }
 
     #[test]

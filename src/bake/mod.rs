@@ -9,17 +9,23 @@
 //! | [`repair`] | what is wrong with a mesh, and what can be put right safely |
 //! | [`finding`] | what readers and repair have to report |
 //! | [`simplify`] | fewer triangles: the methods behind one interface |
+//! | [`mod@split`] | a mesh that is in view near and far at once, in chunks without cracks |
 //! | [`shapes`] | meshes to try it on |
 //! | [`deviation`] | how far two surfaces are apart, as a bound that is proved |
+//! | [`chain`] | plans, chains of measured levels, and their LOD tables |
+//! | [`scene`] | whole glTF scenes: which meshes get levels, and the same scene with them |
 //! | [`mod@write`] | levels as OBJ, as GLB and as pictures |
 
+pub mod chain;
 pub mod deviation;
 pub mod finding;
 pub mod mesh;
 pub mod read;
 pub mod repair;
+pub mod scene;
 pub mod shapes;
 pub mod simplify;
+pub mod split;
 pub mod surface;
 pub mod weld;
 pub mod write;

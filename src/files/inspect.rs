@@ -46,6 +46,8 @@ pub struct SceneInspection {
     pub min: Option<[f32; 3]>,
     /// Largest corner of the box around all objects; `None` without objects.
     pub max: Option<[f32; 3]>,
+    /// The tables themselves where there are no objects, as in what a bake writes; empty otherwise.
+    pub library: Vec<LodTable>,
     /// What is odd about tables, in order of table and level.
     pub lints: Vec<TableLint>,
     /// How many objects have each kind of setting; kinds that no object has are left out.
@@ -222,6 +224,7 @@ impl SceneInspection {
             objects_with_levels: scene.objects.iter().filter(|o| has_choice(scene, o)).count(),
             min: bounds.map(|b| b.min.to_array()),
             max: bounds.map(|b| b.max.to_array()),
+            library: if scene.objects.is_empty() { scene.tables.clone() } else { Vec::new() },
             lints: scene.tables.iter().flat_map(lints).collect(),
             settings: count_settings(&scene.objects),
             unseen: scene.objects.iter().filter(|o| is_unseen(o)).count(),

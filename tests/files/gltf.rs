@@ -445,6 +445,50 @@ fn distances_become_sizes_by_the_size_of_each_object() {
     refused(&wrong(json!([0])), "node 0: its extras.lod_max_distance must be a list of numbers");
 }
 
+/// Per level of the first table, its error and accuracy.
+fn measured(scene: &Scene) -> Vec<(Option<f32>, f32)> {
+    scene.tables[0].levels().iter().map(|l| (l.error, l.accuracy)).collect()
+}
+
+#[test]
+fn what_was_measured_is_in_the_table() {
+    let nodes = json!([{"mesh": 0, "extensions": {"MSFT_lod": {"ids": [1, 2]}}}, {"mesh": 1}, {"mesh": 2}]);
+    let mut f = chain_file(nodes);
+    let unknown = [100, 50, 20].map(|n| (None, accuracy_of(n)));
+    assert_eq!(measured(&good(&f)), unknown);
+    f["meshes"][2]["extras"] = json!({"lod_error": 0.1, "lod_accuracy": 0.75, "lod_rms": 0.01});
+    assert_eq!(measured(&good(&f)), [unknown[0], unknown[1], (Some(0.1), 0.75)]);
+    f["meshes"][1]["extras"] = json!({"lod_error": 0.0625, "lod_accuracy": 0.875});
+    assert_eq!(measured(&good(&f))[..2], [(Some(0.0), 1.0), (Some(0.0625), 0.875)]);
+    f["meshes"][0]["extras"] = json!({"lod_error": 0.03125, "lod_accuracy": 0.9375, "other": []});
+    assert_eq!(measured(&good(&f))[0], (Some(0.03125), 0.9375));
+}
+
+#[test]
+fn a_level_of_several_parts_is_as_good_as_its_worst() {
+    let mut f = chain_file(json!([
+        {"mesh": 0, "extensions": {"MSFT_lod": {"ids": [1]}}},
+        {"mesh": 1, "children": [2]}, {"mesh": 2, "scale": [2, 4, -3]},
+    ]));
+    f["meshes"][1]["extras"] = json!({"lod_error": 0.5, "lod_accuracy": 0.25});
+    assert_eq!(measured(&good(&f)), [(None, accuracy_of(100)), (None, accuracy_of(70))]);
+    f["meshes"][2]["extras"] = json!({"lod_error": 0.25, "lod_accuracy": 0.75});
+    assert_eq!(measured(&good(&f)), [(Some(0.0), 1.0), (Some(1.0), 0.25)]);
+}
+
+#[test]
+fn measures_that_cannot_be_are_refused() {
+    for (key, values) in
+        [("lod_error", json!([-1, "1", 1e300, []])), ("lod_accuracy", json!([-0.5, 1.5, true]))]
+    {
+        for value in values.as_array().expect("a list") {
+            let mut f = chain_file(json!([{"mesh": 0}]));
+            f["meshes"][0]["extras"] = json!({key: value});
+            refused(&f, &format!("mesh 0: its extras.{key} must be"));
+        }
+    }
+}
+
 #[test]
 fn siblings_named_by_level_are_one_object() {
     let f = chain_file(json!([

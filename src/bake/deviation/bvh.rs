@@ -158,6 +158,20 @@ impl Bvh {
         best
     }
 
+    /// Visits all triangles whose squared distance from `point` is no more than `most2`.
+    pub(super) fn each_within(&self, point: DVec3, most2: f64, mut visit: impl FnMut(u32)) {
+        let root = if self.nodes.is_empty() { LEAF } else { 0 };
+        let mut waiting = vec![root];
+        while let Some(child) = waiting.pop() {
+            if child & LEAF == 0 {
+                let near = farther_first(&self.nodes[child as usize], point).into_iter();
+                waiting.extend(near.filter(|&(_, distance2)| distance2 <= most2).map(|(next, _)| next));
+            } else if self.distance2(child & !LEAF, point) <= most2 {
+                visit(child & !LEAF);
+            }
+        }
+    }
+
     fn try_leaf(&self, triangle: u32, point: DVec3, best: &mut Nearest) {
         let distance2 = self.distance2(triangle, point);
         if distance2 < best.distance2 {
@@ -300,6 +314,18 @@ mod tests {
             prop_assert_eq!(nearest.distance2, all.fold(f64::INFINITY, f64::min));
             let found = Facet::new(triangles[order[nearest.triangle as usize] as usize]);
             prop_assert_eq!(nearest.distance2, found.distance2(point));
+        }
+
+        #[test]
+        fn all_within_a_distance_are_visited_once(
+            triangles in triangles(40), point in prop::array::uniform3(-2.0..2.0), most in 0.0..3.0_f64
+        ) {
+            let (point, (bvh, order)) = (DVec3::from(point), Bvh::new(&triangles));
+            let mut found = Vec::new();
+            bvh.each_within(point, most, |triangle| found.push(order[triangle as usize]));
+            found.sort_unstable();
+            let is_within = |&i: &u32| Facet::new(triangles[i as usize]).distance2(point) <= most;
+            prop_assert_eq!(found, (0..triangles.len() as u32).filter(is_within).collect::<Vec<u32>>());
         }
     }
 

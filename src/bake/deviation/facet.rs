@@ -55,11 +55,17 @@ impl Facet {
         away.length_squared() + self.distance2_in_plane(x, y)
     }
 
-    fn distance2_in_plane(&self, x: f64, y: f64) -> f64 {
+    /// Whether a point of the plane is inside.
+    #[inline]
+    fn holds(&self, x: f64, y: f64) -> bool {
         let in_box = x >= 0.0 && x <= self.base && y >= 0.0 && y <= self.height;
         let beyond_left = x * self.height < y * self.foot;
         let beyond_right = (self.base - x) * self.height < y * (self.base - self.foot);
-        if in_box && !beyond_left && !beyond_right {
+        in_box && !beyond_left && !beyond_right
+    }
+
+    fn distance2_in_plane(&self, x: f64, y: f64) -> f64 {
+        if self.holds(x, y) {
             return 0.0;
         }
         let from_base = square(x - x.clamp(0.0, self.base)) + y * y;
@@ -69,15 +75,50 @@ impl Facet {
     }
 }
 
+/// How much of each corner there is in the point of a triangle that is nearest to `point`: three numbers ≥ 0 with a sum
+/// of 1, but for rounding. In a needle they tell as much of a place as there is to tell.
+pub(super) fn nearest_weights(corners: &[DVec3; 3], point: DVec3) -> [f64; 3] {
+    let first = longest_side(corners);
+    let weights = Facet::new(*corners).nearest_weights(point);
+    std::array::from_fn(|k| weights[(k + 3 - first) % 3])
+}
+
+impl Facet {
+    /// The weights of base's start, its end, and the apex.
+    fn nearest_weights(&self, point: DVec3) -> [f64; 3] {
+        let offset = point - self.corner;
+        let [x, y] = [offset.dot(self.along), offset.dot(self.across)];
+        if self.holds(x, y) && self.height > 0.0 {
+            let apex = y / self.height;
+            let end = ((x - apex * self.foot) / self.base).clamp(0.0, 1.0 - apex);
+            return [1.0 - apex - end, end, apex];
+        }
+        let base = if self.base > 0.0 { (x / self.base).clamp(0.0, 1.0) } else { 0.0 };
+        let left = along_side([x, y], [self.foot, self.height], self.left);
+        let right = along_side([x - self.base, y], [self.foot - self.base, self.height], self.right);
+        let sides = [[1.0 - base, base, 0.0], [1.0 - left, 0.0, left], [0.0, 1.0 - right, right]];
+        let far = |[_, end, apex]: [f64; 3]| {
+            square(x - end * self.base - apex * self.foot) + square(y - apex * self.height)
+        };
+        sides.into_iter().fold(sides[0], |best, side| if far(side) < far(best) { side } else { best })
+    }
+}
+
 /// The corners in their cyclic order, such that no side is longer than the first.
-fn longest_side_first([a, b, c]: [DVec3; 3]) -> [DVec3; 3] {
-    let (ab, bc, ca) = (a.distance_squared(b), b.distance_squared(c), c.distance_squared(a));
+fn longest_side_first(corners: [DVec3; 3]) -> [DVec3; 3] {
+    let first = longest_side(&corners);
+    std::array::from_fn(|k| corners[(first + k) % 3])
+}
+
+/// The corner from which the longest side leads to the next; the first of equals.
+fn longest_side([a, b, c]: &[DVec3; 3]) -> usize {
+    let (ab, bc, ca) = (a.distance_squared(*b), b.distance_squared(*c), c.distance_squared(*a));
     if ab >= bc && ab >= ca {
-        [a, b, c]
+        0
     } else if bc >= ca {
-        [b, c, a]
+        1
     } else {
-        [c, a, b]
+        2
     }
 }
 
@@ -102,8 +143,14 @@ fn square(x: f64) -> f64 {
 
 /// The squared distance from a point to the segment from the origin to `end`, whose squared length is 1 ÷ `inverse`.
 fn from_side([x, y]: [f64; 2], end: [f64; 2], inverse: f64) -> f64 {
-    let t = ((x * end[0] + y * end[1]) * inverse).clamp(0.0, 1.0);
+    let t = along_side([x, y], end, inverse);
     square(x - t * end[0]) + square(y - t * end[1])
+}
+
+/// How far along that segment the nearest of its points is, from 0 to 1.
+#[inline]
+fn along_side([x, y]: [f64; 2], end: [f64; 2], inverse: f64) -> f64 {
+    ((x * end[0] + y * end[1]) * inverse).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -132,6 +179,17 @@ mod tests {
             // No point of a triangle is farther from its longest side than its height is long.
             let base = (0..200).map(|k| p.distance(a.lerp(b, f64::from(k) / 199.0))).fold(f64::INFINITY, f64::min);
             prop_assert!(distance >= base - 2e-2 - c.distance(foot) * 10.0_f64.powf(-thin));
+        }
+
+        #[test]
+        fn weights_are_those_of_the_nearest_point(a in point(), b in point(), c in point(), p in point(), thin in 0.0..17.0_f64) {
+            for corners in [[a, b, c], [a, b, a.lerp(b, 0.3).lerp(c, 10.0_f64.powf(-thin))], [b, b, c], [c, c, c]] {
+                let weights = nearest_weights(&corners, p);
+                let place: DVec3 = corners.iter().zip(weights).map(|(&corner, weight)| corner * weight).sum();
+                prop_assert!(weights.iter().all(|&weight| weight >= 0.0));
+                prop_assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+                prop_assert!((place.distance(p) - Facet::new(corners).distance2(p).sqrt()).abs() < 1e-14);
+            }
         }
 
         #[test]

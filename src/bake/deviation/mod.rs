@@ -36,13 +36,17 @@ use std::fmt;
 
 use crate::bake::surface::Surface;
 
+pub mod attributes;
 mod bvh;
+#[cfg(test)]
+mod exact;
 mod facet;
 mod hausdorff;
 mod overlay;
 mod piece;
 mod sampling;
 mod shape;
+pub mod silhouette;
 
 use hausdorff::Extent;
 pub use sampling::Spread;
@@ -163,11 +167,19 @@ impl Ruler {
     pub fn deviation(&self, surface: &Surface, options: &Options) -> Result<Deviation, DeviationError> {
         options.check()?;
         let other = Shape::new(surface, self.origin)?;
-        match (self.shape.is_empty(), other.is_empty()) {
-            _ if self.shape.corners == other.corners => Ok(Deviation::default()),
-            (false, false) => Ok(measure(&self.shape, &other, options)),
-            _ => Err(DeviationError::OneIsEmpty),
+        if nothing_in([self.shape.is_empty(), other.is_empty()])? || self.shape.corners == other.corners {
+            return Ok(Deviation::default());
         }
+        Ok(measure(&self.shape, &other, options))
+    }
+}
+
+/// Whether there is nothing to measure, by which surfaces are empty.
+fn nothing_in(empty: [bool; 2]) -> Result<bool, DeviationError> {
+    match empty.into() {
+        (true, true) => Ok(true),
+        (false, false) => Ok(false),
+        _ => Err(DeviationError::OneIsEmpty),
     }
 }
 

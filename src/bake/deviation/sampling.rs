@@ -1,14 +1,13 @@
 //! How distances are spread over a surface, by sampling.
 
-use glam::DVec3;
-
 use super::Options;
 use super::shape::Shape;
 
 /// Samples of the first pass; every further pass doubles their number.
 const FIRST_PASS: usize = 4096;
 
-/// The distances from the points of one surface to another, each part counting by its area.
+/// How something is spread over a surface, each part counting by its area: the distance to another surface, or the
+/// difference of an attribute.
 ///
 /// A surface without area counts by triangles instead.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,7 +31,12 @@ pub(super) fn sample(from: &Shape, to: &Shape, options: &Options) -> Spread {
     let strata = Strata::new(from);
     for pass in 0.. {
         let wanted = sums.count.max(FIRST_PASS).min(options.max_samples.max(1) - sums.count);
-        strata.visit(wanted, rotation(options.seed, pass), to, &mut sums);
+        let mut near = 0;
+        strata.visit(wanted, options.seed, pass, |place| {
+            let nearest = to.bvh.nearest(from.point(&place), near);
+            near = nearest.triangle;
+            sums.add(nearest.distance2);
+        });
         let spread = sums.spread();
         if spread.rms_error <= options.rms_error * spread.rms || sums.count >= options.max_samples {
             return spread;
@@ -42,7 +46,7 @@ pub(super) fn sample(from: &Shape, to: &Shape, options: &Options) -> Spread {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Sums {
+pub(super) struct Sums {
     count: usize,
     first: f64,
     second: f64,
@@ -51,7 +55,8 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, distance2: f64) {
+    /// Counts one more, given its square.
+    pub(super) fn add(&mut self, distance2: f64) {
         self.count += 1;
         self.first += distance2.sqrt();
         self.second += distance2;
@@ -59,8 +64,9 @@ impl Sums {
         self.max2 = self.max2.max(distance2);
     }
 
-    fn spread(&self) -> Spread {
-        let count = self.count as f64;
+    /// What was counted; zeros where nothing was.
+    pub(super) fn spread(&self) -> Spread {
+        let count = self.count.max(1) as f64;
         let (mean, mean2) = (self.first / count, self.second / count);
         let (rms, variance) = (mean2.sqrt(), (self.fourth / count - mean2 * mean2).max(0.0));
         // The derivative of the root carries the error of the mean square over.
@@ -69,42 +75,49 @@ impl Sums {
     }
 }
 
+/// A place on a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// The triangle, in the order of the shape.
+    pub triangle: usize,
+    /// How much of each corner, ≥ 0, with a sum of 1.
+    pub weights: [f64; 3],
+}
+
 /// A surface unrolled: its triangles side by side, each as long as it is large.
-struct Strata<'a> {
-    shape: &'a Shape,
+pub(super) struct Strata {
     /// Where each triangle ends.
     ends: Vec<f64>,
     total: f64,
 }
 
-impl<'a> Strata<'a> {
-    fn new(shape: &'a Shape) -> Self {
+impl Strata {
+    pub(super) fn new(shape: &Shape) -> Self {
         let ends = running_sum(shape.bvh.facets().iter().map(|facet| facet.area()));
         let total = ends.last().copied().unwrap_or(0.0);
         if total > 0.0 && total.is_finite() {
-            return Self { shape, ends, total };
+            return Self { ends, total };
         }
         let ends = running_sum(shape.corners.iter().map(|_| 1.0));
-        Self { shape, total: ends.len() as f64, ends }
+        Self { total: ends.len() as f64, ends }
     }
 
-    /// Takes one sample from each of `count` strata of equal size, in their order, so that one sample's nearest
-    /// triangle is a good hint for the next.
+    /// Takes one place from each of `count` strata of equal size, in their order, so that what is nearest to one is a
+    /// good hint for the next. Another seed or pass takes others.
     ///
     /// Where in its stratum and where in its triangle is given by an additive recurrence with the powers of the root of
     /// x⁴ = x + 1 (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018), rotated.
-    fn visit(&self, count: usize, rotation: [f64; 3], to: &Shape, sums: &mut Sums) {
+    pub(super) fn visit(&self, count: usize, seed: u64, pass: u64, mut take: impl FnMut(Place)) {
         const STEPS: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_2];
-        let (mut triangle, mut near) = (0, 0);
+        let rotation = rotation(seed, pass);
+        let mut triangle = 0;
         for i in 0..count {
             let [along, u, v] = std::array::from_fn(|k| (rotation[k] + i as f64 * STEPS[k]).fract());
             let place = (i as f64 + along) / count as f64 * self.total;
             while triangle + 1 < self.ends.len() && self.ends[triangle] <= place {
                 triangle += 1;
             }
-            let nearest = to.bvh.nearest(within(&self.shape.corners[triangle], u, v), near);
-            near = nearest.triangle;
-            sums.add(nearest.distance2);
+            take(Place { triangle, weights: weights(u, v) });
         }
     }
 }
@@ -117,11 +130,11 @@ fn running_sum(values: impl Iterator<Item = f64>) -> Vec<f64> {
     values.scan(0.0, add).collect()
 }
 
-/// The point of a triangle that belongs to a point of the unit square, areas being kept
+/// The weights of corners that belong to a point of the unit square, areas being kept
 /// (G. Turk, "Generating random points in triangles", 1990).
-fn within([a, b, c]: &[DVec3; 3], u: f64, v: f64) -> DVec3 {
+fn weights(u: f64, v: f64) -> [f64; 3] {
     let root = u.sqrt();
-    *a + ((*b - *a) * (1.0 - v) + (*c - *a) * v) * root
+    [1.0 - root, root * (1.0 - v), root * v]
 }
 
 /// Three numbers in [0, 1) for a pass (G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom number generators",

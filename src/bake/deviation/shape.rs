@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::bvh::Bvh;
+use super::sampling::Place;
 use super::{DeviationError, Flaw};
 use crate::bake::surface::Surface;
 
@@ -23,6 +24,8 @@ pub(super) struct Shape {
     /// Beyond each edge, from corner k to k + 1, a triangle that has this edge the other way round, or [`NONE`].
     pub neighbours: Vec<[u32; 3]>,
     pub bvh: Bvh,
+    /// For each triangle its index in the surface.
+    pub order: Vec<u32>,
     /// The length of the bounding box's diagonal.
     pub diagonal: f64,
     /// The largest coordinate, without its sign.
@@ -41,11 +44,17 @@ impl Shape {
         let neighbours = neighbours(&triangles);
         let (min, max) = extremes(corners.as_flattened());
         let (diagonal, reach) = ((max - min).length(), max.abs().max(min.abs()).max_element());
-        Ok(Self { corners, triangles, vertex_count, neighbours, bvh, diagonal, reach })
+        Ok(Self { corners, triangles, vertex_count, neighbours, bvh, order, diagonal, reach })
     }
 
     pub(super) fn is_empty(&self) -> bool {
         self.corners.is_empty()
+    }
+
+    /// Where a place is; from the first corner on, so that in a triangle that is a point it is that point.
+    pub(super) fn point(&self, place: &Place) -> DVec3 {
+        let [a, b, c] = self.corners[place.triangle];
+        a + (b - a) * place.weights[1] + (c - a) * place.weights[2]
     }
 }
 
@@ -55,7 +64,7 @@ pub(super) fn origin(surface: &Surface) -> DVec3 {
     first.copied().filter(|position| position.is_finite()).unwrap_or(Vec3::ZERO).as_dvec3()
 }
 
-fn check(surface: &Surface) -> Result<(), DeviationError> {
+pub(super) fn check(surface: &Surface) -> Result<(), DeviationError> {
     if surface.triangles.len() > i32::MAX as usize {
         return Err(DeviationError::TooManyTriangles);
     }

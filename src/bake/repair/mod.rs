@@ -26,7 +26,9 @@ pub fn repair(mesh: &mut Mesh, origins: &mut Origins) -> Vec<Finding> {
     let mut findings = Findings::default();
     neutralise(mesh, &mut findings);
     drop_faces(mesh, origins, &mut findings);
-    drop_isolated(mesh, &mut findings);
+    for position in drop_isolated(mesh) {
+        findings.add(Defect::IsolatedVertex, || place_of(position));
+    }
     find_flat(mesh, origins, &mut findings);
     let borders = edges::find(mesh, origins, &mut findings);
     let junctions = t_junctions::find(&mesh.positions, &borders);
@@ -120,8 +122,8 @@ fn sorted(mut corners: [u32; 3]) -> [u32; 3] {
     corners
 }
 
-/// Leaves out the positions and wedges that no face uses.
-fn drop_isolated(mesh: &mut Mesh, findings: &mut Findings) {
+/// Leaves out the positions and wedges that no face uses, and gives those positions.
+pub(super) fn drop_isolated(mesh: &mut Mesh) -> Vec<Vec3> {
     let mut used = vec![false; mesh.wedges.len()];
     mesh.triangles.as_flattened().iter().for_each(|&wedge| used[wedge as usize] = true);
     let kept: Vec<u32> = (0..used.len() as u32).filter(|&wedge| used[wedge as usize]).collect();
@@ -131,13 +133,13 @@ fn drop_isolated(mesh: &mut Mesh, findings: &mut Findings) {
 
     let mut used = vec![false; mesh.positions.len()];
     mesh.wedges.iter().for_each(|&position| used[position as usize] = true);
-    for (position, _) in mesh.positions.iter().zip(&used).filter(|&(_, &used)| !used) {
-        findings.add(Defect::IsolatedVertex, || place_of(*position));
-    }
+    let unused = mesh.positions.iter().zip(&used).filter(|&(_, &used)| !used);
+    let isolated = unused.map(|(&position, _)| position).collect();
     let new_positions = renumbered(&used);
     mesh.wedges.iter_mut().for_each(|position| *position = new_positions[*position as usize]);
     let mut kept = used.iter();
     mesh.positions.retain(|_| kept.next() == Some(&true));
+    isolated
 }
 
 /// For what is used, how many before it are.

@@ -19,15 +19,24 @@
 //! # Ok::<(), lod_budget::bake::simplify::SimplifyError>(())
 //! ```
 
+mod cluster;
 mod error;
 mod fans;
+mod likeness;
 mod link;
+mod melax;
+mod method;
 mod order;
+mod planes;
 mod quadric;
 mod queue;
 mod rebuild;
+mod workpiece;
 
+pub use cluster::{AdaptiveCluster, Cluster, Representative};
 pub use error::SimplifyError;
+pub use melax::Melax;
+pub use method::{Method, UnknownMethod};
 pub use quadric::{Attributes, GarlandHeckbert, Placement, Topology};
 
 use std::ops::ControlFlow;

@@ -4,26 +4,33 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Bits of a cost that its bucket leaves out: three bits of the mantissa are left, so that costs within one bucket are
-/// less than 13 % apart. With fewer buckets the heap leaves the cache, with more most are empty.
+/// less than 13 % apart. With fewer buckets sorting leaves the cache, with more there is little to look ahead to.
 const FINE_BITS: u32 = 20;
 
 /// Items in the order of their cost, ties by the lower item: a bucket for each range of costs, of which only the
-/// lowest is a heap.
+/// lowest is sorted.
 ///
 /// Costs that a simplification puts back are mostly above the one it took last, so nearly all go to the end of some
-/// bucket, and the heap that is worked on stays in the cache. The order is that of one big heap.
+/// bucket, and what comes next is known in advance. The order is that of one big heap.
 pub(super) struct Queue {
-    /// Costs within buckets up to `current`, and their items.
-    near: BinaryHeap<Reverse<u64>>,
-    current: usize,
-    /// Costs above, by bucket, unsorted.
-    far: Vec<Vec<Reverse<u64>>>,
+    /// The bucket that items are taken from: the costs and items that it had when its turn came, from the last to the
+    /// first.
+    current: Vec<Key>,
+    /// Which bucket that is.
+    turn: usize,
+    /// Costs and items that came too late for their buckets.
+    late: BinaryHeap<Key>,
+    /// Costs and items of the buckets to come, unsorted.
+    far: Vec<Vec<Key>>,
 }
+
+/// The bits of a cost, then the item; the lowest is the largest key.
+type Key = Reverse<u64>;
 
 impl Queue {
     pub(super) fn new() -> Self {
         let buckets = (f32::INFINITY.to_bits() >> FINE_BITS) as usize + 1;
-        Self { near: BinaryHeap::new(), current: 0, far: vec![Vec::new(); buckets] }
+        Self { current: Vec::new(), turn: 0, late: BinaryHeap::new(), far: vec![Vec::new(); buckets] }
     }
 
     /// Adds an item. Costs are ≥ 0 and may be infinite; one that is negative or not a number counts as infinite.
@@ -31,16 +38,27 @@ impl Queue {
         let cost = if cost >= 0.0 { cost.abs() } else { f32::INFINITY };
         let bucket = (cost.to_bits() >> FINE_BITS) as usize;
         let key = Reverse(u64::from(cost.to_bits()) << 32 | u64::from(item));
-        if bucket <= self.current { self.near.push(key) } else { self.far[bucket].push(key) }
+        if bucket <= self.turn { self.late.push(key) } else { self.far[bucket].push(key) }
     }
 
     /// Takes the item of the lowest cost.
     pub(super) fn pop(&mut self) -> Option<(f32, u32)> {
-        while self.near.is_empty() {
-            self.current = (self.current + 1..self.far.len()).find(|&b| !self.far[b].is_empty())?;
-            self.near = BinaryHeap::from(std::mem::take(&mut self.far[self.current]));
+        if self.current.is_empty() && self.late.is_empty() {
+            self.turn = (self.turn + 1..self.far.len()).find(|&b| !self.far[b].is_empty())?;
+            self.current = std::mem::take(&mut self.far[self.turn]);
+            self.current.sort_unstable();
         }
-        self.near.pop().map(|Reverse(key)| (f32::from_bits((key >> 32) as u32), key as u32))
+        let is_late = self.late.peek() > self.current.last();
+        let key = if is_late { self.late.pop() } else { self.current.pop() };
+        key.map(|Reverse(key)| (f32::from_bits((key >> 32) as u32), key as u32))
+    }
+
+    /// The items so many places ahead as far as is known: some may come in before them, and where there are not so
+    /// many in a bucket it is the last of it.
+    #[inline]
+    pub(super) fn ahead<const N: usize>(&self, places: [usize; N]) -> Option<[u32; N]> {
+        let last = self.current.len().checked_sub(1)?;
+        Some(places.map(|place| self.current[last.saturating_sub(place)].0 as u32))
     }
 }
 
@@ -69,6 +87,17 @@ mod tests {
                     prop_assert_eq!(queue.pop(), sorted.pop());
                 }
             }
+        }
+    }
+
+    #[test]
+    fn what_is_ahead_is_what_comes() {
+        let mut queue = Queue::new();
+        (0..5).for_each(|item| queue.push(1.0, item));
+        assert_eq!(queue.ahead([0]), None);
+        for item in 0..4 {
+            assert_eq!(queue.pop(), Some((1.0, item)));
+            assert_eq!(queue.ahead([0, 1]), Some([item + 1, (item + 2).min(4)]));
         }
     }
 

@@ -21,12 +21,14 @@ pub struct LevelOut<'a> {
     pub measured: Option<Measured>,
     /// The share of the image, ≥ 0, from which on the level is shown, as `MSFT_screencoverage` has it.
     pub coverage: Option<f32>,
+    /// What share of the object's benefit the level has, from 0 to 1; `None` where nobody worked it out.
+    pub accuracy: Option<f32>,
 }
 
 impl<'a> LevelOut<'a> {
     /// A level of which nothing is known but its mesh.
     pub fn new(mesh: &'a Mesh) -> Self {
-        Self { mesh, measured: None, coverage: None }
+        Self { mesh, measured: None, coverage: None, accuracy: None }
     }
 }
 

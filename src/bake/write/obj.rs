@@ -1,8 +1,8 @@
 //! Wavefront OBJ (*Advanced Visualizer manual, appendix B1: object files*).
 //!
 //! Positions are written once, so that a seam is no border: `v`, `vt` and `vn` have indices of their own. OBJ holds the
-//! first set of texture coordinates and nothing of tangents and joints. It has colours per `v` alone, and only as many
-//! programs know of: where the wedges of one position differ in colour, the position is written once for each.
+//! first set of texture coordinates and nothing of tangents and joints. Colours stand behind the `v`, as
+//! many programs have it: where the wedges of one position differ in colour, the position is written once for each.
 //! Materials are names; there is no material file.
 
 use std::fmt::{self, Display, Formatter, Write};
@@ -14,8 +14,11 @@ use crate::bake::weld::{Classes, classes};
 
 /// The mesh as OBJ. Numbers are the shortest that are read as the same 32 bits again.
 ///
-/// [`read::obj`](crate::bake::read::obj) gives the mesh back, its wedges in order of first use; positions that are equal
-/// become one, as do neighbouring groups of the same name and material. Line breaks in names become spaces.
+/// [`read::obj`](crate::bake::read::obj) gives the mesh back, its wedges in order of first use. Positions that are
+/// equal become one, as do neighbouring groups of the same name and material. Line breaks in names become spaces.
+///
+/// # Panics
+/// Where the mesh does not [check](Mesh::check).
 pub fn obj(mesh: &Mesh) -> String {
     let mut text = String::new();
     // A string takes whatever is written to it.

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 
+use lod_budget::LevelRecord;
 use lod_budget::files::inspect::{InstanceInspection, PathInspection, SceneInspection, Total};
 use lod_budget::files::{Break, BreakKind, Inspection, inspect};
 use serde::Serialize;
@@ -44,6 +45,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> anyhow::Result<()> {
         return Ok(());
     }
     let words = match inspection {
+        Inspection::Scene(tables) if !tables.library.is_empty() => library_in_words(tables),
         Inspection::Scene(scene) => scene_in_words(scene),
         Inspection::Path(path) => path_in_words(path),
         Inspection::Instance(instance) => instance_in_words(instance),
@@ -85,10 +87,37 @@ fn scene_in_words(s: &SceneInspection) -> String {
     if s.unseen > 0 {
         lines.say("Unseen", format!("{} that no camera can see", counted(s.unseen, "object")));
     }
+    say_lints(&mut lines, s);
+    lines.0
+}
+
+fn say_lints(lines: &mut Lines, s: &SceneInspection) {
     for lint in &s.lints {
         lines.say("Odd", format!("table '{}', level {}: {}", plain(&lint.table), lint.level, lint.rule));
     }
+}
+
+/// Tables that no object uses yet: what matters is their levels.
+fn library_in_words(s: &SceneInspection) -> String {
+    let mut lines = Lines::default();
+    lines.say("Scene", format!("{}: {}, no objects", plain(&s.name), counted(s.tables, "table")));
+    for table in &s.library {
+        let (bounds, levels) = (table.bounds(), counted(table.levels().len(), "level"));
+        let bound = format!("radius {} around {}", bounds.radius, point(bounds.center.to_array()));
+        lines.say("Table", format!("{}: {levels}, {bound}", plain(table.name())));
+        for (level, record) in table.levels().iter().enumerate() {
+            lines.say("", format!("level {level}: {}", record_in_words(record)));
+        }
+    }
+    say_lints(&mut lines, s);
     lines.0
+}
+
+fn record_in_words(l: &LevelRecord) -> String {
+    let said = |name: &str, number: Option<f32>| number.map(|n| format!(", {name} {n}")).unwrap_or_default();
+    let (error, min_size) = (said("error", l.error), said("min_size", l.min_size));
+    let [triangles, vertices] = [l.triangles, l.vertices].map(|n| count(u64::from(n)));
+    format!("{triangles} triangles, {vertices} vertices, accuracy {}{error}{min_size}", l.accuracy)
 }
 
 fn total_in_words(t: &Total) -> String {

@@ -1,6 +1,7 @@
 //! The `lod` command: parses, calls the library, prints. Every command is a file of its own.
 #![forbid(unsafe_code)]
 
+mod bake;
 mod compare;
 mod generate;
 mod inspect;
@@ -25,6 +26,7 @@ const EXAMPLES: &str = "\
 Examples:
   lod compare                        every policy in the bundled building
   lod compare city --out report      … and a report with plots in ./report
+  lod bake rock.obj                  levels of a mesh, measured, in ./baked
   lod inspect scene.glb              what is in a file, and what is odd about it
   lod solve instance.json --exact    one knapsack, solved to the optimum
 
@@ -33,6 +35,7 @@ Exit status: 0 done, 1 a check failed, 2 bad input or usage.";
 #[derive(Subcommand)]
 enum Command {
     Compare(Box<compare::Args>),
+    Bake(bake::Args),
     Inspect(inspect::Args),
     Solve(solve::Args),
     Generate(generate::Args),
@@ -43,20 +46,24 @@ const REFUSED: u8 = 2;
 
 fn main() -> ExitCode {
     match Cli::try_parse() {
-        Ok(cli) => run(cli.command).map_or_else(|error| refuse(&error), |()| ExitCode::SUCCESS),
+        Ok(cli) => run(cli.command).unwrap_or_else(|error| refuse(&error)),
         Err(usage) => explain(&usage),
     }
 }
 
-fn run(command: Command) -> anyhow::Result<()> {
+fn run(command: Command) -> anyhow::Result<ExitCode> {
     let mut out = BufWriter::new(io::stdout().lock());
+    let mut complaints = Vec::new();
     match command {
         Command::Compare(args) => compare::run(&args, &mut out)?,
+        Command::Bake(args) => complaints = bake::run(&args, &mut out)?,
         Command::Inspect(args) => inspect::run(&args, &mut out)?,
         Command::Solve(args) => solve::run(&args, &mut out)?,
         Command::Generate(args) => generate::run(&args, &mut out)?,
     }
-    Ok(out.flush()?)
+    out.flush()?;
+    let status = complaints.iter().fold(ExitCode::SUCCESS, |_, message| complain(message));
+    Ok(status)
 }
 
 /// Says in one line what was wrong. A reader of ours that has seen enough is nothing wrong.

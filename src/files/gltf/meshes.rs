@@ -10,6 +10,7 @@ use glam::{DMat4, DVec3};
 use serde_json::Value;
 
 use super::Refused;
+use super::baked::Baked;
 use super::document::Document;
 use crate::bounds::Sphere;
 
@@ -21,6 +22,7 @@ pub(super) struct Measure {
     pub(super) draws: u64,
     pub(super) bytes: u64,
     pub(super) bounds: Box3,
+    pub(super) baked: Baked,
 }
 
 /// A box in double precision; `min > max` when it holds nothing.
@@ -113,7 +115,14 @@ fn measure(document: &Document, mesh: &json::Mesh) -> Result<Measure, String> {
     }
     let mut accessors = BTreeSet::new();
     let mut positions = BTreeSet::new();
-    let mut total = Measure { triangles: 0, vertices: 0, draws: 0, bytes: 0, bounds: Box3::EMPTY };
+    let mut total = Measure {
+        triangles: 0,
+        vertices: 0,
+        draws: 0,
+        bytes: 0,
+        bounds: Box3::EMPTY,
+        baked: Baked::of(mesh)?,
+    };
     for (i, primitive) in mesh.primitives.iter().enumerate() {
         let within = |rule: String| format!("primitive {i}: {rule}");
         let position = position_of(primitive).map_err(|rule| within(rule.to_owned()))?;

@@ -11,8 +11,13 @@
 //! **Tables.** Objects of the same meshes, placed alike within the object, and of the same switching data share a
 //! table, called after the finest mesh. Per level: triangles by the mode of each primitive (strips and fans count
 //! n − 2, points and lines 0); vertices as the sum of POSITION counts, an accessor counted once per mesh; a draw per
-//! primitive; bytes as the accessors take once unpacked, morph targets with them; error unknown; accuracy by
-//! [`accuracy_of`](crate::table::accuracy_of). The bound holds all levels, and every morph target at full weight.
+//! primitive; bytes as the accessors take once unpacked, morph targets with them. The bound holds all levels, and every
+//! morph target at full weight.
+//!
+//! **Measured levels**: the error of a level, in object units, and its accuracy are what `extras.lod_error` and
+//! `extras.lod_accuracy` of its meshes say, of several the worst. Level 0 is exact (0 and 1) where nothing is said of it
+//! and all coarser levels are known. Otherwise the error is unknown, and accuracy is by
+//! [`accuracy_of`](crate::table::accuracy_of).
 //!
 //! **Levels**, in this order of precedence:
 //! 1. `MSFT_lod` on a node: the node is level 0, `ids` are the coarser levels. A level is its node and everything
@@ -41,6 +46,7 @@
 //! beyond 32 bits, transforms that are not affine or not finite, and required extensions that could change what is
 //! counted. Extensions of compression, materials, textures and lights are accepted: the accessors tell the counts.
 
+mod baked;
 mod document;
 mod groups;
 mod meshes;

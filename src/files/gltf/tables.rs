@@ -7,6 +7,7 @@ use glam::DMat4;
 use serde_json::Value;
 
 use super::Refused;
+use super::baked::Baked;
 use super::groups::{Group, Part};
 use super::meshes::{Box3, Measured};
 use crate::scene::TableId;
@@ -137,9 +138,11 @@ impl<'a> Tables<'a> {
         }
         let mut shape =
             Shape { name: mesh_name(meshes, first.mesh), bounds: Box3::EMPTY, levels: Vec::new() };
+        let mut baked = Vec::new();
         for parts in &group.levels {
-            shape.push_level(parts, meshes)?;
+            baked.push(shape.push_level(parts, meshes)?);
         }
+        shape.tell(&baked);
         shape.bounds = shape.bounds.with_extent();
         self.shape_keys.insert(key, self.shapes.len());
         self.shapes.push(shape);
@@ -202,7 +205,9 @@ fn mesh_name(meshes: &Measured<'_>, mesh: usize) -> String {
 }
 
 impl Shape {
-    fn push_level(&mut self, parts: &[Part], meshes: &mut Measured<'_>) -> Result<(), Refused> {
+    /// Adds a level, and returns what was measured of it.
+    fn push_level(&mut self, parts: &[Part], meshes: &mut Measured<'_>) -> Result<Baked, Refused> {
+        let mut baked = Vec::new();
         let mut sums = [0_u64; 4];
         for part in parts {
             let m = meshes.measure(part.mesh)?;
@@ -210,6 +215,7 @@ impl Shape {
             for (sum, more) in sums.iter_mut().zip([m.triangles, m.vertices, m.draws, m.bytes]) {
                 *sum = sum.saturating_add(more);
             }
+            baked.push((m.baked, part.transform));
         }
         let place = || format!("table '{}', level {}", self.name, self.levels.len());
         let rule = "triangles, vertices and draws must each be at most 4294967295";
@@ -226,7 +232,17 @@ impl Shape {
             accuracy,
             min_size: None,
         });
-        Ok(())
+        Ok(Baked::joined(baked.into_iter()))
+    }
+
+    /// Tells every level what was measured of it.
+    fn tell(&mut self, baked: &[Baked]) {
+        for (level, baked) in self.levels.iter_mut().zip(baked).skip(1) {
+            baked.tell(level);
+        }
+        if let (Some(level), [finest, coarser @ ..]) = (self.levels.first_mut(), baked) {
+            finest.tell_finest(level, coarser);
+        }
     }
 }
 

@@ -83,10 +83,7 @@ const HARMLESS: [&str; 14] = [
 impl<'a> Document<'a> {
     /// From text or GLB. Buffers that are files of their own must be in `folder`.
     pub(super) fn open(bytes: &'a [u8], folder: Option<&Path>) -> Result<Self, Refused> {
-        let (text, blob) = match bytes.starts_with(b"glTF") {
-            true => chunks(bytes).map_err(Refused::whole)?,
-            false => (bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), None),
-        };
+        let (text, blob) = parts(bytes).map_err(Refused::whole)?;
         let root: Root =
             serde_json::from_slice(text).map_err(|e| Refused::whole(format!("its JSON is wrong: {e}")))?;
         root.check().map_err(Refused::whole)?;
@@ -108,6 +105,11 @@ impl<'a> Document<'a> {
     /// The nodes that the scene starts from; `None` where the file has no scene.
     pub(super) fn roots(&self) -> Option<&[usize]> {
         self.roots.as_deref()
+    }
+
+    /// The bytes of every buffer, or why they cannot be had.
+    pub(super) fn buffers(&self) -> impl Iterator<Item = Result<&[u8], &str>> {
+        self.buffers.iter().map(|buffer| buffer.as_deref().map_err(String::as_str))
     }
 
     /// The bytes of a buffer view, and how far apart its elements are if it says so.
@@ -179,7 +181,7 @@ fn fetch<'a>(
 }
 
 /// A file beside the glTF file. Only plain files are opened, so that nothing is read for ever.
-fn from_disk(uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, String> {
+pub(super) fn from_disk(uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, String> {
     let folder = folder.ok_or("must be in the file itself here")?;
     let name = unescaped(uri).filter(|name| !name.contains(':') && !Path::new(name).is_absolute());
     let path = folder.join(name.ok_or_else(|| format!("must be a file beside this one, not {uri:?}"))?);
@@ -225,6 +227,14 @@ fn sextet(letter: u8) -> Option<u32> {
         _ => return None,
     };
     Some(u32::from(value))
+}
+
+/// The JSON of a text or GLB file, and the bytes in it if it has any.
+pub(super) fn parts(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
+    match bytes.starts_with(b"glTF") {
+        true => chunks(bytes),
+        false => Ok((bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), None)),
+    }
 }
 
 /// The JSON of a GLB, and its bytes if it has any: a header of 12 bytes (magic, version, length), then chunks (length,

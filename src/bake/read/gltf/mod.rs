@@ -19,6 +19,9 @@ mod accessor;
 mod document;
 mod nodes;
 mod primitive;
+mod source;
+
+pub(in crate::bake) use self::source::Source;
 
 use std::path::Path;
 

@@ -38,6 +38,12 @@ impl Quadric {
         Self { diagonal, mixed: (weight * mixed).to_array(), ..Self::default() }
     }
 
+    /// Some of its bits, for who wants it in the cache.
+    #[inline]
+    pub(super) fn bits(&self) -> u32 {
+        self.constant.to_bits()
+    }
+
     #[inline]
     pub(super) fn form(&self) -> Form {
         Form {

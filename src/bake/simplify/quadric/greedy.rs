@@ -1,11 +1,12 @@
 //! The greedy: contract the edge that costs least, until there are few enough triangles.
 
+use std::hint::black_box;
 use std::ops::ControlFlow;
 
 use glam::{DVec3, Vec3};
 
 use super::form::{Form, Quadric};
-use super::guard::Guard;
+use super::guard::{Facing, Guard};
 use super::layer::{Around, Move};
 use super::layers::Layers;
 use super::placement::Spot;
@@ -99,6 +100,8 @@ pub(super) struct Greedy<'a> {
     triangles: Vec<[u32; 3]>,
     /// Per triangle, the old one that it was.
     old_triangles: Vec<u32>,
+    /// Per triangle, where it faced before all contractions.
+    facings: Vec<Facing>,
     fans: Fans,
     /// The attributes, if there are any.
     layers: Option<Layers<'a>>,
@@ -146,6 +149,7 @@ impl<'a> Greedy<'a> {
             fans: Fans::new(count, &triangles),
             from: triangles.len(),
             live: triangles.len(),
+            facings: vec![Facing::default(); triangles.len()],
             triangles,
             old_triangles,
             layers,
@@ -179,6 +183,7 @@ impl<'a> Greedy<'a> {
             let normal = across.normalize_or_zero();
             let area = 0.5 * weight * across.length();
             let plane = Quadric::plane(normal, area);
+            self.facings[t] = Facing::new(normal);
             for corner in corners {
                 self.quadrics[corner as usize].add(&plane);
                 self.areas[corner as usize] += area as f32;
@@ -296,6 +301,7 @@ impl<'a> Greedy<'a> {
             if look % STRIDE == 0 && progress(so_far).is_break() {
                 return Stopped::Cancelled;
             }
+            self.read_ahead();
             match self.queue.pop() {
                 Some((_, vertex)) => since_sweep += usize::from(self.look_at(vertex)),
                 None if since_sweep * WORTH_A_SWEEP > present => {
@@ -306,6 +312,28 @@ impl<'a> Greedy<'a> {
             }
         }
         Stopped::Exhausted
+    }
+
+    /// Reads what the next looks will need, so that it is in the cache when their turn comes: they are all over the
+    /// mesh, and simplification waits for memory more than for anything else. What is found by what was read has to
+    /// wait for the next stage.
+    #[inline]
+    fn read_ahead(&self) {
+        let Some([far, near, next]) = self.queue.ahead([14, 10, 6]) else { return };
+        let partner = |vertex: u32| self.choices[vertex as usize].partner();
+        let any_triangle = |vertex| self.fans.of(vertex).first().map_or(0, |&t| t);
+        let corner = |&t: &u32| self.triangles[t as usize][0];
+        let bits = self.read(far) ^ partner(far) ^ any_triangle(near) ^ self.read(partner(near));
+        let corners = self.fans.of(next).iter().fold(0, |bits, t| bits ^ corner(t));
+        black_box(bits ^ any_triangle(partner(next)) ^ corners);
+    }
+
+    /// Some bits of all that is kept of a vertex itself.
+    #[inline]
+    fn read(&self, vertex: u32) -> u32 {
+        let at = vertex as usize;
+        let marks = u32::from(self.marks[at]) ^ self.fans.of(vertex).len() as u32;
+        marks ^ self.positions[at].x.to_bits() ^ self.quadrics[at].bits()
     }
 
     /// Contracts the choice of a vertex if it still stands and may be; returns whether it did.
@@ -422,6 +450,8 @@ impl<'a> Greedy<'a> {
         } else {
             partners.extend(sides.map(|[p, _]| p).filter(|&p| p > vertex));
         }
+        // All are read before any is needed: one wait instead of one for each.
+        black_box(partners.iter().fold(0, |bits, &p| bits ^ self.quadrics[p as usize].bits()));
         let mut cheapest = Choice::NONE;
         for &partner in &partners {
             let choice = Choice::new(self.cost(vertex, partner), partner);
@@ -475,7 +505,8 @@ impl<'a> Greedy<'a> {
         let from = self.place(vertex);
         self.fans.of(vertex).iter().all(|&t| {
             let [p, q] = others(self.triangles[t as usize], vertex);
-            p == other || q == other || self.guard.allows(from, to, self.place(p), self.place(q))
+            let side = || [self.place(p), self.place(q)];
+            p == other || q == other || self.guard.allows(from, to, side(), self.facings[t as usize])
         })
     }
 

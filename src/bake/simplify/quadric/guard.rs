@@ -11,20 +11,40 @@ pub(super) struct Guard {
     shape: f64,
 }
 
+/// Where a triangle of the original faces, to a hundredth: its unit normal in 127ths.
+///
+/// Turns that are each allowed add up, in the end to a triangle on its back; what it once was does not move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Facing([i8; 3]);
+
+impl Facing {
+    /// Of a unit normal, or of 0, which is no direction at all.
+    pub(super) fn new(normal: DVec3) -> Self {
+        Self((127.0 * normal).round().to_array().map(|x| x as i8))
+    }
+
+    /// Whether a triangle with the normal `normal`, of whatever length, is turned by more than a right angle.
+    #[inline]
+    fn is_left_by(self, normal: DVec3) -> bool {
+        normal.dot(DVec3::from_array(self.0.map(f64::from))) < 0.0
+    }
+}
+
 impl Guard {
     pub(super) fn new(turn: f32, shape: f32) -> Self {
         let squared = |x: f32| f64::from(x.clamp(0.0, 1.0)).powi(2);
         Self { turn: squared(turn), shape: squared(shape) }
     }
 
-    /// Whether the triangle of the corners `from`, `p` and `q` may become that of `to`, `p` and `q`. A triangle without
-    /// area may become anything.
+    /// Whether the triangle of the corners `from`, `p` and `q` may become that of `to`, `p` and `q`, which once was
+    /// `facing`. A triangle without area may become anything.
     #[inline]
-    pub(super) fn allows(&self, from: DVec3, to: DVec3, p: DVec3, q: DVec3) -> bool {
+    pub(super) fn allows(&self, from: DVec3, to: DVec3, [p, q]: [DVec3; 2], facing: Facing) -> bool {
         let (side, old, new) = (q - p, p - from, p - to);
         let (before, after) = (old.cross(side), new.cross(side));
         let (turn, sizes) = (before.dot(after), (before.length_squared(), after.length_squared()));
-        let keeps_direction = (turn > 0.0) & (turn * turn >= self.turn * sizes.0 * sizes.1);
+        let keeps_direction =
+            (turn > 0.0) & (turn * turn >= self.turn * sizes.0 * sizes.1) & !facing.is_left_by(after);
         let sides = |a: DVec3| side.length_squared() + a.length_squared() + (a + side).length_squared();
         let spread = sides(new);
         let is_shapely = 12.0 * sizes.1 >= self.shape * spread * spread;
@@ -35,11 +55,13 @@ impl Guard {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_4;
+
     use super::*;
 
     /// Whether the corner (0, 1) of a triangle over (±1, 0) may go there.
     fn may_go(guard: Guard, x: f64, y: f64, z: f64) -> bool {
-        guard.allows(DVec3::Y, DVec3::new(x, y, z), DVec3::NEG_X, DVec3::X)
+        guard.allows(DVec3::Y, DVec3::new(x, y, z), [DVec3::NEG_X, DVec3::X], Facing::default())
     }
 
     #[test]
@@ -51,12 +73,24 @@ mod tests {
         assert!(may_go(Guard::new(0.0, 0.0), 0.0, 0.001, 1.0));
     }
 
+    /// Half a right angle at a time, seen from above, which is where the triangle faces.
+    #[test]
+    fn turns_do_not_add_up_to_more_than_a_right_angle() {
+        let guard = Guard::new(0.5, 0.1);
+        let tip = |eighths: f64| DVec3::new(0.0, (eighths * FRAC_PI_4).cos(), (eighths * FRAC_PI_4).sin());
+        let upwards = Facing::new(DVec3::NEG_Z);
+        let may_turn =
+            |from: f64, to: f64| guard.allows(tip(from), tip(to), [DVec3::NEG_X, DVec3::X], upwards);
+        assert!(may_turn(0.0, 1.0) && may_turn(1.0, 1.9) && may_turn(2.9, 1.9));
+        assert!(!may_turn(1.9, 2.9) && !may_turn(1.9, 2.1));
+    }
+
     #[test]
     fn slivers_may_get_better_and_what_has_no_area_may_become_anything() {
         let guard = Guard::new(0.5, 0.5);
-        let (p, q) = (DVec3::NEG_X, DVec3::X);
-        assert!(guard.allows(DVec3::Y * 0.01, DVec3::Y * 0.02, p, q));
-        assert!(!guard.allows(DVec3::Y * 0.02, DVec3::Y * 0.01, p, q));
-        assert!(guard.allows(DVec3::ZERO, DVec3::NEG_Y, p, q));
+        let allows = |from, to| guard.allows(from, to, [DVec3::NEG_X, DVec3::X], Facing::new(DVec3::NEG_Z));
+        assert!(allows(DVec3::Y * 0.01, DVec3::Y * 0.02));
+        assert!(!allows(DVec3::Y * 0.02, DVec3::Y * 0.01));
+        assert!(allows(DVec3::ZERO, DVec3::NEG_Y));
     }
 }

@@ -7,7 +7,7 @@ use crate::bounds::Aabb;
 
 /// What is written so far: columns one after the other, each in a view of its own, at multiples of 4 bytes.
 #[derive(Debug, Default)]
-pub(super) struct Blob {
+pub(in crate::bake) struct Blob {
     bytes: Vec<u8>,
     views: Vec<Value>,
     accessors: Vec<Value>,
@@ -20,6 +20,11 @@ const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
 
 impl Blob {
+    /// What is written after the bytes, views and accessors of a file. Its one buffer must end at a multiple of 4 bytes.
+    pub(in crate::bake) fn after(bytes: Vec<u8>, views: Vec<Value>, accessors: Vec<Value>) -> Self {
+        Self { bytes, views, accessors }
+    }
+
     /// Rows of 2 to 4 floats. Returns the accessor, as all of these do.
     pub(super) fn floats<const N: usize>(&mut self, rows: &[[f32; N]]) -> usize {
         let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][N.clamp(1, 4) - 1];
@@ -63,12 +68,12 @@ impl Blob {
     }
 
     /// Whether a GLB can still hold it.
-    pub(super) fn check(&self) -> Result<(), &'static str> {
+    pub(in crate::bake) fn check(&self) -> Result<(), &'static str> {
         if self.bytes.len() > u32::MAX as usize { Err(TOO_LARGE) } else { Ok(()) }
     }
 
     /// Views, accessors, bytes.
-    pub(super) fn into_parts(self) -> (Vec<Value>, Vec<Value>, Vec<u8>) {
+    pub(in crate::bake) fn into_parts(self) -> (Vec<Value>, Vec<Value>, Vec<u8>) {
         (self.views, self.accessors, self.bytes)
     }
 }
@@ -82,7 +87,7 @@ pub(super) fn buffers(bytes: &[u8]) -> Vec<Value> {
 
 /// A GLB: a header of 12 bytes, then chunks, each of length, kind and bytes: the JSON and, where there are any, the
 /// buffer's.
-pub(super) fn packed(json: &str, mut blob: Vec<u8>) -> Result<Vec<u8>, &'static str> {
+pub(in crate::bake) fn packed(json: &str, mut blob: Vec<u8>) -> Result<Vec<u8>, &'static str> {
     let mut json = json.as_bytes().to_vec();
     pad(&mut json, b' ');
     pad(&mut blob, 0);

@@ -4,7 +4,7 @@
 //! shows its finest level; its `MSFT_lod` names further nodes, placed alike, that show the coarser ones. Those are no
 //! part of the scene, so that a program that does not know the extension draws the finest level alone. The coverage
 //! from which on each level is shown is in `extras.MSFT_screencoverage` of the first node; what was measured is in the
-//! `extras` of a level's mesh: `lod_error`, `lod_hausdorff` and `lod_rms`, in object units.
+//! `extras` of a level's mesh: `lod_error`, `lod_hausdorff` and `lod_rms`, in object units, and `lod_accuracy`.
 //!
 //! Groups of triangles become primitives, each with vertices of its own, a wedge a vertex, and indices of 16 bits where
 //! they will do. A primitive's `extras.name` is its group's name. Materials are names: matt, white, without textures.
@@ -32,25 +32,28 @@
 //! let chain = scene.add_chain("rock", &[LevelOut::new(&rock)])?;
 //! for x in [0.0, 5.0] {
 //!     let transform = Transform::Matrix(glam::Mat4::from_translation(glam::Vec3::X * x));
-//!     scene.add_node(Node { name: "rock".into(), chain: Some(chain), transform, ..Node::default() });
+//!     scene.add_node(Node { name: "rock".into(), chain: Some(chain), transform, ..Node::default() })?;
 //! }
 //! let bytes = scene.finish()?;
 //! # Ok::<(), lod_budget::bake::write::GlbError>(())
 //! ```
 
 mod attributes;
-mod blob;
-mod primitive;
+pub(in crate::bake) mod blob;
+mod node;
+pub(in crate::bake) mod primitive;
 
 use std::collections::BTreeMap;
 use std::fmt;
 
-use glam::{Mat4, Quat, Vec3};
 use serde_json::{Map, Value, json};
 
 use self::blob::Blob;
+use self::node::Placed;
 use super::{LevelOut, Measured};
 use crate::bake::mesh::Mesh;
+
+pub use self::node::{Node, NodeId, Transform};
 
 /// All levels of one object, finest first, called after the finest one's mesh.
 ///
@@ -60,7 +63,7 @@ pub fn glb(levels: &[LevelOut<'_>]) -> Result<Vec<u8>, GlbError> {
     let name = levels.first().map_or("", |level| &level.mesh.name);
     let mut glb = Glb::default();
     let chain = glb.add_chain(name, levels)?;
-    glb.add_node(Node { name: name.to_owned(), chain: Some(chain), ..Node::default() });
+    glb.add_node(Node { name: name.to_owned(), chain: Some(chain), ..Node::default() })?;
     glb.finish()
 }
 
@@ -91,47 +94,6 @@ impl std::error::Error for GlbError {}
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChainId(usize);
 
-/// A node of one [`Glb`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct NodeId(usize);
-
-/// A place in the scene.
-#[derive(Clone, Debug, Default)]
-pub struct Node {
-    /// `_LOD0` and so on is added where the node shows a chain.
-    pub name: String,
-    /// `None` for a root of the scene.
-    pub parent: Option<NodeId>,
-    /// What it shows.
-    pub chain: Option<ChainId>,
-    /// From its own space to its parent's.
-    pub transform: Transform,
-    /// What else to say of it.
-    pub extras: Map<String, Value>,
-}
-
-/// How a node is placed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Transform {
-    /// Affine, and by the specification a product of translation, rotation and scale.
-    Matrix(Mat4),
-    /// Scale first, translation last.
-    Parts {
-        /// In the parent's units.
-        translation: Vec3,
-        /// Of unit length.
-        rotation: Quat,
-        /// 1 leaves an axis as it is.
-        scale: Vec3,
-    },
-}
-
-impl Default for Transform {
-    fn default() -> Self {
-        Self::Matrix(Mat4::IDENTITY)
-    }
-}
-
 /// A file in the making: first chains, then the nodes that show them.
 #[derive(Debug, Default)]
 pub struct Glb {
@@ -156,13 +118,6 @@ struct Chain {
     meshes: Vec<Option<usize>>,
     /// Per level, or empty.
     coverage: Vec<f32>,
-}
-
-/// A node as the file has it, but for its children.
-#[derive(Debug)]
-struct Placed {
-    node: Map<String, Value>,
-    children: Vec<usize>,
 }
 
 impl Glb {
@@ -197,16 +152,23 @@ impl Glb {
             return Ok(None);
         }
         let mut mesh = object(json!({ "name": name, "primitives": primitives }));
-        mesh.extend(level.measured.map(|measured| ("extras".to_owned(), extras(&measured))));
+        let extras = extras(level);
+        mesh.extend((!extras.is_empty()).then(|| ("extras".to_owned(), Value::Object(extras))));
         self.meshes.push(Value::Object(mesh));
         Ok(Some(self.meshes.len() - 1))
     }
 
     /// Adds a node, and those of the coarser levels of what it shows.
     ///
+    /// # Errors
+    /// A transform that is not finite.
+    ///
     /// # Panics
     /// Where its parent or chain is of another file.
-    pub fn add_node(&mut self, node: Node) -> NodeId {
+    pub fn add_node(&mut self, node: Node) -> Result<NodeId, GlbError> {
+        if !node.transform.is_finite() {
+            return Err(GlbError::new(node.name, "its transform must be finite"));
+        }
         let id = self.nodes.len();
         match node.parent {
             Some(parent) => self.nodes[parent.0].children.push(id),
@@ -214,21 +176,21 @@ impl Glb {
         }
         match node.chain {
             Some(chain) => self.add_levels(&node, chain.0),
-            None => self.push_node(&node, &node.name),
+            None => self.nodes.push(Placed::of(&node, &node.name)),
         }
-        let mut extras = self.nodes[id].node.remove("extras").map(object).unwrap_or_default();
-        extras.extend(node.extras);
+        let mut extras = node.extras;
+        extras.extend(self.nodes[id].node.remove("extras").map(object).unwrap_or_default());
         if !extras.is_empty() {
             self.nodes[id].node.insert("extras".to_owned(), Value::Object(extras));
         }
-        NodeId(id)
+        Ok(NodeId(id))
     }
 
     fn add_levels(&mut self, node: &Node, chain: usize) {
         let head = self.nodes.len();
         for level in 0..self.chains[chain].meshes.len() {
             let mesh = self.chains[chain].meshes[level];
-            self.push_node(node, &format!("{}_LOD{level}", node.name));
+            self.nodes.push(Placed::of(node, &format!("{}_LOD{level}", node.name)));
             let mesh = mesh.map(|mesh| ("mesh".to_owned(), json!(mesh)));
             self.nodes[head + level].node.extend(mesh);
         }
@@ -241,12 +203,6 @@ impl Glb {
         if !coverage.is_empty() {
             head.insert("extras".to_owned(), json!({ "MSFT_screencoverage": coverage }));
         }
-    }
-
-    fn push_node(&mut self, node: &Node, name: &str) {
-        let mut placed = node.transform.parts();
-        placed.insert("name".to_owned(), json!(name));
-        self.nodes.push(Placed { node: placed, children: Vec::new() });
     }
 
     /// The file.
@@ -289,31 +245,6 @@ impl Materials {
     }
 }
 
-impl Placed {
-    fn finished(mut self) -> Value {
-        if !self.children.is_empty() {
-            self.node.insert("children".to_owned(), json!(self.children));
-        }
-        Value::Object(self.node)
-    }
-}
-
-impl Transform {
-    /// The parts that are not as they are anyway.
-    fn parts(self) -> Map<String, Value> {
-        let all = match self {
-            Self::Matrix(m) => vec![("matrix", m != Mat4::IDENTITY, json!(m.to_cols_array()))],
-            Self::Parts { translation, rotation, scale } => vec![
-                ("translation", translation != Vec3::ZERO, json!(translation.to_array())),
-                ("rotation", rotation != Quat::IDENTITY, json!(rotation.to_array())),
-                ("scale", scale != Vec3::ONE, json!(scale.to_array())),
-            ],
-        };
-        let telling = all.into_iter().filter(|&(_, tells, _)| tells);
-        telling.map(|(name, _, value)| (name.to_owned(), value)).collect()
-    }
-}
-
 /// Per level, or empty where no level has one.
 fn coverages(levels: &[LevelOut<'_>]) -> Result<Vec<f32>, &'static str> {
     let coverage: Vec<f32> = levels.iter().filter_map(|level| level.coverage).collect();
@@ -326,7 +257,8 @@ fn coverages(levels: &[LevelOut<'_>]) -> Result<Vec<f32>, &'static str> {
     Ok(coverage)
 }
 
-fn check(mesh: &Mesh) -> Result<(), String> {
+/// Whether a mesh can be written.
+pub(in crate::bake) fn check(mesh: &Mesh) -> Result<(), String> {
     mesh.check()?;
     let corners = mesh.triangles.as_flattened().iter().map(|&w| mesh.wedges[w as usize]);
     match corners.into_iter().find(|&p| !mesh.positions[p as usize].is_finite()) {
@@ -335,9 +267,13 @@ fn check(mesh: &Mesh) -> Result<(), String> {
     }
 }
 
-fn extras(measured: &Measured) -> Value {
-    let &Measured { error, hausdorff, rms } = measured;
-    json!({ "lod_error": f64::from(error), "lod_hausdorff": hausdorff, "lod_rms": rms })
+/// What is known of a level.
+pub(in crate::bake) fn extras(level: &LevelOut<'_>) -> Map<String, Value> {
+    let measured = level.measured.map_or_else(Map::new, |Measured { error, hausdorff, rms }| {
+        object(json!({ "lod_error": f64::from(error), "lod_hausdorff": hausdorff, "lod_rms": rms }))
+    });
+    let accuracy = level.accuracy.map(|accuracy| ("lod_accuracy".to_owned(), json!(accuracy)));
+    measured.into_iter().chain(accuracy).collect()
 }
 
 /// Matt and white: without a word glTF means bare metal.

@@ -34,7 +34,7 @@ impl<'a> Vertices<'a> {
 }
 
 /// Writes a group that has triangles.
-pub(super) fn add(blob: &mut Blob, mesh: &Mesh, group: &Group, material: Option<usize>) -> Value {
+pub(in crate::bake) fn add(blob: &mut Blob, mesh: &Mesh, group: &Group, material: Option<usize>) -> Value {
     let vertices = Vertices::of(mesh, group);
     let indices = blob.indices(&vertices.indices, vertices.wedges.len());
     let mut primitive = json!({ "attributes": attributes(blob, &vertices), "indices": indices });

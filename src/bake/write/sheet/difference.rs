@@ -9,8 +9,8 @@ const CELLS: usize = 64;
 /// thing that went is not to outweigh many that moved.
 const MOST: f32 = 0.05;
 
-/// The upper left corner of the square of `window` samples in which the frames, equally large, differ most; the first of
-/// equals. In the middle where they do not differ.
+/// The upper left corner of the square of `window` samples in which the frames, equally large, differ most; of equals
+/// the first. In the middle where they do not differ.
 pub(super) fn greatest(a: &Frame, b: &Frame, window: usize) -> [usize; 2] {
     let cell = a.side.div_ceil(CELLS);
     let mut sums = vec![0.0; CELLS * CELLS];

@@ -1,8 +1,8 @@
 //! Which triangle a sample shows: a depth buffer over a square of samples.
 //!
 //! Corners are put on a grid of 256 steps a sample and tested in integers, as graphics cards do, so that triangles that
-//! share an edge leave no gap between them (Pineda, *A parallel algorithm for polygon rasterization*, 1988). A sample on
-//! an edge belongs to both.
+//! share an edge leave no gap between them (Pineda, *A parallel algorithm for polygon rasterization*, 1988). A sample
+//! on an edge belongs to both.
 
 use glam::DVec3;
 
@@ -196,7 +196,11 @@ mod tests {
 
         /// A fan of any corners around a point within leaves no gap.
         #[test]
-        fn neighbours_leave_no_gap(x in 1.0..23.0, y in 1.0..23.0, turns in prop::collection::btree_set(0..1000_u32, 3..9)) {
+        fn neighbours_leave_no_gap(
+            x in 1.0..23.0,
+            y in 1.0..23.0,
+            turns in prop::collection::btree_set(0..1000_u32, 3..9),
+        ) {
             let hub = at(x, y, 0.0);
             let rim: Vec<DVec3> = turns.iter().map(|&turn| {
                 let angle = f64::from(turn) * std::f64::consts::TAU / 1000.0;

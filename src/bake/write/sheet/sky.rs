@@ -1,7 +1,7 @@
 //! How open the sky is above what is seen: hollows are darker than ridges.
 //!
-//! What rises around a sample is told from the depth buffer alone (Mittring, *Finding next gen: CryEngine 2*, 2007). What
-//! rises by more than three times its distance is something in front, and hides nothing.
+//! What rises around a sample is told from the depth buffer alone (Mittring, *Finding next gen: CryEngine 2*, 2007).
+//! What rises by more than three times its distance is something in front, and hides nothing.
 
 use super::raster::Frame;
 
@@ -19,8 +19,8 @@ const LEAST_RISE: f32 = 0.15;
 
 /// Where to look for neighbours.
 pub(super) struct Sky {
-    /// Steps to the right and downwards, and how long they are. The four samples of a pixel look in different directions,
-    /// which their mean evens out.
+    /// Steps to the right and downwards, and how long they are. The four samples of a pixel look in different
+    /// directions, which their mean evens out.
     steps: [Vec<(isize, isize, f32)>; 4],
 }
 

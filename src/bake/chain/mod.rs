@@ -1,0 +1,70 @@
+//! From a mesh to its levels and their LOD table.
+//!
+//! A [`Plan`] says how: with which method, where to make levels ([`Stops`]) and where to end ([`Limits`]); a [`Preset`]
+//! is a plan for a kind of object. [`Plan::bake`] simplifies from the original and *measures* every level against it.
+//! Nothing that a method believes of itself gets into a table.
+//!
+//! ```
+//! use lod_budget::bake::chain::{Accuracy, Plan, quietly};
+//! use lod_budget::bake::shapes;
+//!
+//! let knot = shapes::torus_knot(200, 20).into();
+//! let chain = Plan::default().bake(&knot, &mut quietly)?;
+//! let table = chain.table(Accuracy::default())?;
+//! assert!(table.levels().len() > 3 && table.lint().is_empty());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod appearance;
+mod error;
+mod measure;
+mod plan;
+mod preset;
+mod search;
+mod stops;
+mod table;
+
+pub use appearance::{Appearance, Look};
+pub use error::BakeError;
+pub use measure::ChainLevel;
+pub use plan::{Plan, Progress, quietly};
+pub use preset::Preset;
+pub use stops::{Length, Limits, Stops};
+pub use table::Accuracy;
+
+use super::simplify::Target;
+
+/// The levels of a mesh, measured.
+#[derive(Clone, Debug)]
+pub struct Chain {
+    /// Finest first; level 0 is the mesh itself. Never empty, at most [`MAX_LEVELS`](crate::table::MAX_LEVELS).
+    pub levels: Vec<ChainLevel>,
+    /// How many positions of the mesh no triangle uses. They are left out of every level.
+    pub unreferenced: usize,
+    /// The levels that were asked for and are not there.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A level that was asked for and is not there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeftOut {
+    /// What was asked for.
+    pub target: Target,
+    /// The triangles that the method came to.
+    pub triangles: usize,
+    /// Why it would be of no use.
+    pub reason: Reason,
+}
+
+/// Why a level is left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// It has as many triangles as the finer one, or saves fewer than [`Limits::least_gain`] asks for.
+    NotCoarser,
+    /// It is farther from level 0 than [`Limits::most_error`], or a level before it is.
+    TooFar,
+    /// Nothing is left of it.
+    Empty,
+    /// It, or a level before it, does not fit the other chunks of its mesh.
+    Misfit,
+}

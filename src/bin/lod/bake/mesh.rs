@@ -1,0 +1,151 @@
+//! One mesh, from its file to its outputs.
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, anyhow};
+use lod_budget::bake::chain::{BakeError, Chain, Progress};
+use lod_budget::bake::read;
+
+use super::inputs::{Found, Input};
+use super::outputs::{Folder, Outputs};
+use super::record::{Record, Stamp, input_stamps};
+use super::settings::Settings;
+use super::summary::{LeftOutRow, LevelRow, MeshRow, Status};
+use super::work::Tell;
+
+/// Bakes a mesh, unless that was done before. Whatever the file holds becomes one mesh.
+///
+/// # Errors
+/// What the file, the mesh or the folder is at fault for, each naming it.
+pub fn bake(
+    input: &Input,
+    found: &Found,
+    settings: &Settings,
+    tell: &mut Tell<'_>,
+) -> anyhow::Result<MeshRow> {
+    let stamps = input_stamps(&input.file);
+    let folder = Folder::new(&settings.out, &input.name);
+    let before = Record::read(&folder);
+    if !settings.force {
+        if let Some(row) = before.as_ref().and_then(|record| record.kept(&folder, settings, &stamps)) {
+            return Ok(row.of_input(input).within(&folder));
+        }
+        folder.check_owner(before.as_ref(), &stamps).with_context(|| input.file.display().to_string())?;
+    }
+    folder.check_inputs(found).with_context(|| input.file.display().to_string())?;
+    let (row, outputs) = baked(input, settings, tell)?;
+    let row = write(row, outputs, &folder, before.as_ref(), settings, stamps)?;
+    Ok(row.within(&folder))
+}
+
+/// The levels, in memory.
+fn baked(input: &Input, settings: &Settings, tell: &mut Tell<'_>) -> anyhow::Result<(MeshRow, Outputs)> {
+    let of_input = || input.file.display().to_string();
+    let mut file = read::load(&input.file).map_err(|e| anyhow!("{e}"))?;
+    file.mesh.name.clone_from(&input.name);
+    let findings = file.findings.iter().map(ToString::to_string).collect();
+    let bake = |progress: &mut Asked<'_>| settings.plan.bake(&file.mesh, progress);
+    let baked = timed(&input.name, bake, settings, tell).with_context(of_input)?;
+    Ok((MeshRow { input: of_input(), findings, ..baked.0 }, baked.1))
+}
+
+/// How a bake asks whether to go on.
+pub type Asked<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
+
+/// Has something baked, and tells all there is to tell but where it is from.
+pub fn timed(
+    name: &str,
+    bake: impl FnOnce(&mut Asked<'_>) -> Result<Chain, BakeError>,
+    settings: &Settings,
+    tell: &mut Tell<'_>,
+) -> anyhow::Result<(MeshRow, Outputs)> {
+    let mut clock = Clock::new();
+    let mut progress = |at| {
+        tell(clock.tick(at));
+        ControlFlow::Continue(())
+    };
+    let chain = bake(&mut progress)?;
+    clock.stop();
+    let table = chain.table(settings.accuracy)?;
+    let row = MeshRow {
+        input: String::new(),
+        name: name.to_owned(),
+        status: Status::Baked,
+        method: settings.method.to_owned(),
+        preset: settings.preset.map(str::to_owned),
+        seconds: clock.simplifying.as_secs_f64(),
+        measure_seconds: clock.measuring.as_secs_f64(),
+        diagonal: diagonal(&chain),
+        unreferenced: chain.unreferenced,
+        findings: Vec::new(),
+        levels: LevelRow::all(&chain, &table),
+        left_out: chain.left_out.iter().map(LeftOutRow::of).collect(),
+        scene_file: None,
+        table_file: None,
+        sheet_file: None,
+    };
+    Ok((row, Outputs { chain, table }))
+}
+
+fn diagonal(chain: &Chain) -> f64 {
+    let bounds = chain.levels[0].mesh.bounds();
+    (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length()
+}
+
+/// Puts the files in place. The old record goes first and the new one comes last, so that whatever happens in between,
+/// no record speaks of files that are not those.
+fn write(
+    mut row: MeshRow,
+    outputs: Outputs,
+    folder: &Folder,
+    before: Option<&Record>,
+    settings: &Settings,
+    inputs: Vec<Stamp>,
+) -> anyhow::Result<MeshRow> {
+    folder.make()?;
+    Record::remove(folder)?;
+    let stamps = outputs.write(&mut row, folder, settings)?;
+    let record = Record::new(settings, inputs, stamps, row);
+    if let Some(before) = before {
+        folder.remove_stale(before, &record);
+    }
+    record.write(folder)?;
+    Ok(record.row)
+}
+
+/// How long simplifying and measuring take: the time between two reports belongs to what the first one said.
+struct Clock {
+    since: Instant,
+    is_simplifying: bool,
+    simplifying: Duration,
+    measuring: Duration,
+}
+
+impl Clock {
+    /// Getting ready to measure comes first.
+    fn new() -> Self {
+        let (simplifying, measuring) = (Duration::ZERO, Duration::ZERO);
+        Self { since: Instant::now(), is_simplifying: false, simplifying, measuring }
+    }
+
+    /// Takes the time, and returns how much is done, from 0 to 1.
+    fn tick(&mut self, at: Progress) -> f64 {
+        self.stop();
+        self.is_simplifying = matches!(at, Progress::Simplifying(_));
+        let share = |part: usize, whole: usize| part as f64 / whole.max(1) as f64;
+        match at {
+            Progress::Simplifying(at) => {
+                0.5 * share(at.from - at.triangles.min(at.from), at.from.saturating_sub(at.target))
+            }
+            Progress::Measuring { done, total } => 0.5 + 0.5 * share(done, total),
+        }
+    }
+
+    fn stop(&mut self) {
+        let now = Instant::now();
+        let sum = if self.is_simplifying { &mut self.simplifying } else { &mut self.measuring };
+        *sum += now - self.since;
+        self.since = now;
+    }
+}

@@ -1,0 +1,77 @@
+//! What was asked for, as a plan.
+
+use std::path::PathBuf;
+
+use lod_budget::bake::chain::{Accuracy, Limits, Plan, Preset, Stops};
+use lod_budget::bake::scene;
+
+use super::{Args, ChainArgs, Format};
+
+/// How every mesh is baked.
+pub struct Settings {
+    pub plan: Plan,
+    pub accuracy: Accuracy,
+    pub formats: Vec<Format>,
+    /// What is done to scenes.
+    pub scene: scene::Options,
+    pub out: PathBuf,
+    pub force: bool,
+    /// As `--method` has it.
+    pub method: &'static str,
+    pub preset: Option<&'static str>,
+}
+
+impl Settings {
+    /// # Errors
+    /// What no mesh could be baked with.
+    pub fn of(args: &Args) -> anyhow::Result<Self> {
+        let plan = args.chain.plan();
+        plan.check()?;
+        Ok(Self {
+            plan,
+            accuracy: args.chain.accuracy.accuracy(),
+            formats: args.format.clone(),
+            scene: args.scene.options(),
+            out: args.out.clone(),
+            force: args.force,
+            method: args.chain.method.name(),
+            preset: args.chain.preset.map(Preset::name),
+        })
+    }
+
+    pub fn wants(&self, format: Format) -> bool {
+        self.formats.contains(&format)
+    }
+
+    /// All that the outputs depend on beside the mesh; equal keys make equal files.
+    pub fn key(&self) -> String {
+        let formats = [Format::Glb, Format::Obj, Format::Json, Format::Sheet].map(|f| (f, self.wants(f)));
+        format!("{} {:?} {:?} {formats:?}", env!("CARGO_PKG_VERSION"), self.plan, self.accuracy)
+    }
+}
+
+impl ChainArgs {
+    /// The preset's plan, or the default one, changed by what was asked for. Levels that are named one by one are made
+    /// whatever the limits of the preset.
+    fn plan(&self) -> Plan {
+        let plan = Plan { method: self.method, ..self.preset.map_or_else(Plan::default, Preset::plan) };
+        match (self.named_stops(), self.levels) {
+            (Some(stops), _) => Plan { stops, limits: Limits::NONE, ..plan },
+            (None, Some(levels)) => {
+                let limits = if self.preset.is_some() { plan.limits } else { Limits::NONE };
+                Plan { limits: Limits { levels, ..limits }, ..plan }
+            }
+            (None, None) => plan,
+        }
+    }
+
+    fn named_stops(&self) -> Option<Stops> {
+        if !self.ratios.is_empty() {
+            return Some(Stops::Shares(self.ratios.clone()));
+        }
+        if !self.triangles.is_empty() {
+            return Some(Stops::Triangles(self.triangles.clone()));
+        }
+        (!self.errors.is_empty()).then(|| Stops::Errors(self.errors.clone()))
+    }
+}
