@@ -10,6 +10,7 @@ use lod_budget::bake::write::obj;
 use lod_budget::bake::{Group, Mesh, Surface};
 use lod_budget::files::{CameraPath, Scene, write_atomically};
 use lod_budget::sim::generate::{Model, Recipe, scatter, scatter_path};
+use lod_budget::table::LodTable;
 use serde::Serialize;
 
 use crate::text;
@@ -35,6 +36,9 @@ pub struct Args {
     /// Write the mesh of each kind of object instead, to DIR/CLASS/KIND.obj, CLASS being its preset for `lod bake`
     #[arg(long, conflicts_with_all = ["seed", "objects"])]
     meshes: bool,
+    /// Gather the tables that `lod bake --out BAKED` has written of these meshes in DIR/NAME.json instead
+    #[arg(long, value_name = "BAKED", conflicts_with_all = ["seed", "objects", "meshes", "json"])]
+    tables: Option<PathBuf>,
     /// Print one JSON object and nothing else
     #[arg(long)]
     json: bool,
@@ -97,7 +101,29 @@ struct WrittenMesh {
 }
 
 pub fn run(args: &Args, out: &mut dyn Write) -> anyhow::Result<()> {
-    if args.meshes { write_meshes(args, out) } else { write_scene(args, out) }
+    match &args.tables {
+        Some(baked) => gather_tables(args, baked, out),
+        None if args.meshes => write_meshes(args, out),
+        None => write_scene(args, out),
+    }
+}
+
+fn gather_tables(args: &Args, baked: &Path, out: &mut dyn Write) -> anyhow::Result<()> {
+    let recipe = args.what.recipe().context("--tables: those of a scatter are not measured")?;
+    let tables =
+        recipe.models().iter().map(|model| baked_table(&model.name, baked)).collect::<Result<_, _>>()?;
+    let library = Scene { name: recipe.name().to_owned(), tables, objects: Vec::new() };
+    fs::create_dir_all(&args.out).with_context(|| format!("{}: it cannot be made", args.out.display()))?;
+    let file = args.out.join(format!("{recipe}.json"));
+    library.write(&file)?;
+    writeln!(out, "{}: {}", file.display(), text::counted(library.tables.len(), "table"))?;
+    Ok(())
+}
+
+fn baked_table(name: &str, baked: &Path) -> anyhow::Result<LodTable> {
+    let file = baked.join(name).join(format!("{name}.json"));
+    let table = Scene::read(&file)?.tables.into_iter().find(|table| table.name() == name);
+    table.with_context(|| format!("{}: it must have a table '{name}'", file.display()))
 }
 
 fn write_meshes(args: &Args, out: &mut dyn Write) -> anyhow::Result<()> {

@@ -40,14 +40,10 @@ impl Draft {
         Self { scene, kinds: Vec::new(), measured: Vec::new() }
     }
 
-    /// Takes a kind into stock.
-    ///
-    /// # Panics
-    /// A kind without a table is a mistake in this crate.
+    /// Takes a kind into stock, with the table that was measured of it.
     pub fn stock(&mut self, kind: Kind) -> Stock {
-        let table = self.measured.iter().find(|table| table.name() == kind.name);
-        let table = table.expect("every kind has been measured").clone();
-        let settings = kind.settings;
+        let measured = self.measured.iter().find(|table| table.name() == kind.name).cloned();
+        let (table, settings) = (measured.unwrap_or_else(|| kind.unmeasured()), kind.settings);
         self.kinds.push(kind);
         self.stock_table(table, settings)
     }

@@ -4,7 +4,7 @@ use super::angle::sin_cos_deg;
 use super::foliage::loose;
 use super::kind::Kind;
 use super::model::Assembly;
-use super::model::Class::{Character, LargeProp};
+use super::model::Class::{Character, SmallProp};
 use super::place::{Place, at, between, corners, lattice, pair, ring, row, strewn};
 use super::solid::{block, capsule, card, cylinder, field, frustum, prism, rounded, sphere, torus, tube};
 
@@ -48,7 +48,7 @@ fn hands() -> [Place; 2] {
 
 /// The singer: everything that a close-up asks for, 50 000 triangles.
 pub(super) fn singer() -> Kind {
-    Kind::new("singer", Character, [0.77, 1.82, 0.64], |singer| {
+    Kind::new("singer", SmallProp, [0.77, 1.82, 0.64], |singer| {
         singer.put("skin", sphere(1.0, 96), [at(0.0, 1.62, 0.0).stretched([0.105, 0.14, 0.115])]);
         hair(singer, [0.0, 1.67, -0.03], [0.125, 0.125, 0.12]);
         hair(singer, [0.0, 1.4, -0.14], [0.16, 0.3, 0.06]);
@@ -82,7 +82,7 @@ fn hair(singer: &mut Assembly, center: [f64; 3], radii: [f64; 3]) {
 }
 
 pub(super) fn tent() -> Kind {
-    Kind::new("tent", LargeProp, [4.0, 2.4, 4.0], |tent| {
+    Kind::new("tent", SmallProp, [4.0, 2.4, 4.0], |tent| {
         let canvas = |x: f64, z: f64| 2.3 * (1.0 - x.abs() / 2.0) * (1.0 - z.abs() / 2.0) + 0.05;
         tent.put("canvas", field([3.9, 3.9], [28, 28], canvas), [at(0.0, 0.0, 0.0)]);
         let ropes = ring(12, 1.9, 0.0).into_iter().map(|peg| {
@@ -96,7 +96,7 @@ pub(super) fn tent() -> Kind {
 }
 
 pub(super) fn lantern() -> Kind {
-    Kind::new("lantern", LargeProp, [0.6, 3.0, 0.6], |lantern| {
+    Kind::new("lantern", SmallProp, [0.6, 3.0, 0.6], |lantern| {
         lantern.put("wood", cylinder(0.05, 2.6, 24), [at(0.0, 0.0, 0.0)]);
         lantern.put("paper", sphere(0.27, 40), [at(0.0, 2.72, 0.0)]);
     })
@@ -104,7 +104,7 @@ pub(super) fn lantern() -> Kind {
 }
 
 pub(super) fn stage() -> Kind {
-    Kind::new("stage", LargeProp, [20.0, 10.0, 12.0], |stage| {
+    Kind::new("stage", SmallProp, [20.0, 10.0, 12.0], |stage| {
         stage.put("wood", block([20.0, 1.4, 12.0]), [at(0.0, 0.0, 0.0)]);
         let lines = [-5.5, -2.75, 0.0, 2.75, 5.5];
         let chords = [[9.4, 0.0], [9.4, 0.5], [9.85, 0.25]];
@@ -134,7 +134,7 @@ fn lacing(chords: &[[f64; 2]; 3], z: f64) -> Vec<Place> {
 }
 
 pub(super) fn food_stall() -> Kind {
-    Kind::new("food stall", LargeProp, [5.0, 3.2, 3.0], |stall| {
+    Kind::new("food stall", SmallProp, [5.0, 3.2, 3.0], |stall| {
         stall.put("wood", block([4.8, 1.0, 0.9]), [at(0.0, 0.0, 0.9)]);
         stall.put("wood", block([4.8, 2.4, 0.08]), [at(0.0, 0.0, -1.3)]);
         stall.put("wood", cylinder(0.05, 2.7, 20), corners(2.3, 0.0, 1.2));
@@ -143,13 +143,13 @@ pub(super) fn food_stall() -> Kind {
         let crates = lattice([8, 3, 1], [-2.0, 0.1, -0.9], [2.0, 1.1, -0.9]);
         stall.put("wood", rounded([0.5, 0.3, 0.4], 0.03, 3), crates);
         stall.put("steel", cylinder(0.15, 0.3, 40), row(8, [-2.0, 1.0, 0.9], [2.0, 1.0, 0.9]));
-        let gable = [[-1.2, 0.0], [0.0, 0.0], [1.2, 0.0], [0.0, -0.5]];
+        let gable = [[-1.2, 0.0], [1.2, 0.0], [0.0, -0.5]];
         stall.put("wood", prism(&gable, 0.05), [at(0.0, 2.3, 1.4).pitch(90.0)]);
     })
 }
 
 pub(super) fn bench() -> Kind {
-    Kind::new("log bench", LargeProp, [2.2, 0.5, 0.4], |bench| {
+    Kind::new("log bench", SmallProp, [2.2, 0.5, 0.4], |bench| {
         bench.put("wood", cylinder(0.2, 1.0, 40), [between([-1.1, 0.3, 0.0], [1.1, 0.3, 0.0])]);
         bench.put(
             "wood",

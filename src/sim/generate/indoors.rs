@@ -2,12 +2,12 @@
 
 use super::foliage::{Crown, boughs};
 use super::kind::Kind;
-use super::model::Class::{Foliage, LargeProp, SmallProp};
+use super::model::Class::SmallProp;
 use super::place::{at, between, corners, even_unit, lattice, pair, ring, row};
 use super::solid::{block, cylinder, field, frustum, lathe, prism, rounded, sphere, torus, tube};
 
 pub(super) fn planter() -> Kind {
-    Kind::new("planter", Foliage, [1.8, 2.6, 1.8], |planter| {
+    Kind::new("planter", SmallProp, [1.8, 2.6, 1.8], |planter| {
         let pot = [[0.0, 0.0], [0.34, 0.0], [0.47, 0.6], [0.43, 0.6], [0.42, 0.5]];
         planter.put("clay", lathe(&pot, 48), [at(0.0, 0.0, 0.0)]);
         planter.put("clay", torus(0.45, 0.04, [48, 24]), [at(0.0, 0.58, 0.0)]);
@@ -121,7 +121,7 @@ pub(super) fn round_table() -> Kind {
 }
 
 pub(super) fn crockery() -> Kind {
-    Kind::new("crockery", SmallProp, [0.45, 0.15, 0.42], |crockery| {
+    Kind::new("crockery", SmallProp, [0.47, 0.15, 0.45], |crockery| {
         let stacks = |low: f64, high: f64| {
             ring(3, 0.135, low).into_iter().flat_map(move |s| [s, s.by(0.0, high - low, 0.0)])
         };
@@ -176,7 +176,7 @@ pub(super) fn coffee_machine() -> Kind {
 }
 
 pub(super) fn grand_piano() -> Kind {
-    Kind::new("grand piano", LargeProp, [1.5, 1.6, 2.2], |piano| {
+    Kind::new("grand piano", SmallProp, [1.5, 1.6, 2.2], |piano| {
         piano.put("lacquer", prism(&piano_outline(), 0.3), [at(0.0, 0.66, 0.0)]);
         piano.put(
             "lacquer",

@@ -3,7 +3,9 @@
 use glam::Vec3;
 
 use super::model::{Assembly, Class, Model};
+use crate::bounds::Sphere;
 use crate::scene::Settings;
+use crate::table::{LevelRecord, LodTable};
 
 /// What an artist would hand in: a named object in metres, standing on the point it is placed at.
 pub(super) struct Kind {
@@ -49,24 +51,28 @@ impl Kind {
         let mut assembly = Assembly::default();
         (self.build)(&mut assembly);
         let model = assembly.model(&self.name, self.class);
-        debug_assert!(fits(&model, self.size), "{} is {:?}", self.name, extent(&model));
+        debug_assert!(fits(model.extent(), self.size), "{} is {:?}", self.name, model.extent());
         model
+    }
+
+    /// The table of what has not been measured: its finest level alone.
+    ///
+    /// # Panics
+    /// A kind without an extent is a mistake in this crate.
+    pub fn unmeasured(&self) -> LodTable {
+        let model = self.model();
+        let [low, high] = model.extent();
+        let bounds = Sphere::new((low + high) / 2.0, (high - low).length() / 2.0);
+        let finest = LevelRecord::new(model.triangles.len() as u32, model.positions.len() as u32);
+        LodTable::new(&self.name, bounds, vec![finest]).expect("every kind has an extent")
     }
 }
 
-/// Whether a model is in its box but for a twentieth, fills three quarters of each side, and stands on the ground.
-fn fits(model: &Model, size: [f64; 3]) -> bool {
+/// Whether what reaches from a corner to another is in a box of this size but for a twentieth, fills three quarters of
+/// each side, and stands on the ground.
+fn fits([low, high]: [Vec3; 2], size: [f64; 3]) -> bool {
     let size = Vec3::from(size.map(|side| side as f32));
-    let (half, [low, high]) = (0.55 * size.with_y(0.0), extent(model));
+    let half = 0.55 * size.with_y(0.0);
     let is_inside = (low + half).cmpge(Vec3::ZERO).all() && high.cmple(half.with_y(1.05 * size.y)).all();
     is_inside && (high - low).cmpge(0.75 * size).all() && low.y < 0.1 * size.y
-}
-
-/// The corners of the box around it.
-fn extent(model: &Model) -> [Vec3; 2] {
-    let corners = |least: Vec3, most: Vec3| [least, most];
-    model
-        .positions
-        .iter()
-        .fold(corners(Vec3::MAX, Vec3::MIN), |[low, high], &p| corners(low.min(p), high.max(p)))
 }

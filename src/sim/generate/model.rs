@@ -16,7 +16,7 @@ use super::solid::Solid;
 pub struct Model {
     /// Name of the kind, and of its table.
     pub name: String,
-    /// What kind of thing it is to those who make levels of it.
+    /// How its levels are made.
     pub class: Class,
     /// In metres.
     pub positions: Vec<Vec3>,
@@ -26,18 +26,19 @@ pub struct Model {
     pub materials: Vec<(&'static str, Range<usize>)>,
 }
 
-/// How levels of a kind are best made: the presets of `lod bake`, by name.
+/// How levels of a kind are made: presets of `lod bake`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// Furniture and what stands on it.
+    /// Furniture; and what has leaves or hair, which as foliage or as a character would keep every strand and end at half
+    /// its triangles.
     SmallProp,
     /// What one walks around.
     LargeProp,
-    /// What has leaves.
-    Foliage,
-    /// Walls, floors, houses.
+    /// What rooms are made of.
     LevelArchitecture,
-    /// People.
+    /// Houses and streets, seen from afar.
+    Vista,
+    /// The crowd.
     Character,
 }
 
@@ -47,8 +48,8 @@ impl Class {
         match self {
             Self::SmallProp => "small-prop",
             Self::LargeProp => "large-prop",
-            Self::Foliage => "foliage",
             Self::LevelArchitecture => "level-architecture",
+            Self::Vista => "vista",
             Self::Character => "character",
         }
     }
@@ -102,6 +103,14 @@ impl Model {
             Some((material, run)) if *material == part.material => run.end = end,
             _ => self.materials.push((part.material, start..end)),
         }
+    }
+}
+
+impl Model {
+    /// The corners of the box around it.
+    pub fn extent(&self) -> [Vec3; 2] {
+        let corners = |[low, high]: [Vec3; 2], &p: &Vec3| [low.min(p), high.max(p)];
+        self.positions.iter().fold([Vec3::MAX, Vec3::MIN], corners)
     }
 }
 

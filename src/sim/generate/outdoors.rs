@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::angle::sin_cos_deg;
 use super::foliage::{Crown, boughs, bumps};
 use super::kind::Kind;
-use super::model::Class::{Foliage, LargeProp, LevelArchitecture};
+use super::model::Class::{LargeProp, LevelArchitecture, SmallProp};
 use super::place::{at, between, even_unit, on_cone, ring, strewn};
 use super::solid::{card, cylinder, field, frustum, rounded, sphere, tube};
 
@@ -23,7 +23,7 @@ pub(super) fn ground() -> Kind {
 }
 
 pub(super) fn beech() -> Kind {
-    Kind::new("beech", Foliage, [9.0, 16.0, 9.0], |beech| {
+    Kind::new("beech", SmallProp, [9.0, 16.0, 9.0], |beech| {
         beech.put("bark", tube([0.35, 0.15], 9.0, 32), [at(0.0, 0.0, 0.0)]);
         boughs(beech, [40, 10], 0.1, [4.0, 9.0], ([0.0, 10.0, 0.0], [2.9, 4.0, 2.9]));
         let main = Crown {
@@ -45,7 +45,7 @@ pub(super) fn beech() -> Kind {
 
 /// Skirts of needles around a trunk, and sprays all over them.
 pub(super) fn spruce() -> Kind {
-    Kind::new("spruce", Foliage, [6.0, 22.0, 6.0], |spruce| {
+    Kind::new("spruce", SmallProp, [6.0, 22.0, 6.0], |spruce| {
         spruce.put("bark", tube([0.3, 0.05], 20.0, 24), [at(0.0, 0.0, 0.0)]);
         for skirt in 0..9 {
             let up = f64::from(skirt);
@@ -62,7 +62,7 @@ pub(super) fn spruce() -> Kind {
 }
 
 pub(super) fn birch() -> Kind {
-    Kind::new("birch", Foliage, [5.0, 13.0, 5.0], |birch| {
+    Kind::new("birch", SmallProp, [5.0, 13.0, 5.0], |birch| {
         birch.put("bark", tube([0.15, 0.06], 11.0, 24), [at(0.0, 0.0, 0.0)]);
         boughs(birch, [20, 8], 0.05, [4.0, 10.0], ([0.0, 8.6, 0.0], [1.4, 3.4, 1.4]));
         let clumps = [
@@ -83,7 +83,7 @@ pub(super) fn birch() -> Kind {
 
 /// Where the path comes close: a tree for the camera to pass within arm's reach.
 pub(super) fn old_oak() -> Kind {
-    Kind::new("old oak", Foliage, [18.0, 20.0, 18.0], |oak| {
+    Kind::new("old oak", SmallProp, [18.0, 20.0, 18.0], |oak| {
         oak.put("bark", tube([1.2, 0.7], 7.0, 64), [at(0.0, 0.0, 0.0)]);
         oak.put("bark", sphere(0.4, 24), strewn(12, [0.0, 3.5, 0.0], [0.75, 2.8, 0.75]));
         boughs(oak, [60, 16], 0.3, [4.5, 7.0], ([0.0, 11.0, 0.0], [6.0, 5.0, 6.0]));
@@ -104,10 +104,10 @@ pub(super) fn old_oak() -> Kind {
 }
 
 pub(super) fn shrub() -> Kind {
-    Kind::new("shrub", Foliage, [1.8, 1.4, 1.8], |shrub| {
-        let twigs = ring(10, 0.05, 0.0).into_iter().map(|twig| twig.pitch(25.0));
+    Kind::new("shrub", SmallProp, [1.8, 1.45, 1.6], |shrub| {
+        let twigs = ring(10, 0.05, 0.01).into_iter().map(|twig| twig.pitch(25.0));
         shrub.put("bark", tube([0.02, 0.01], 0.8, 6), twigs);
-        for (center, radius) in [([-0.17, 0.74, 0.0], 0.66), ([0.25, 0.62, 0.12], 0.55)] {
+        for (center, radius) in [([-0.17, 0.76, 0.0], 0.66), ([0.25, 0.64, 0.12], 0.55)] {
             Crown {
                 center,
                 radii: [radius, 0.9 * radius, radius],
@@ -121,24 +121,21 @@ pub(super) fn shrub() -> Kind {
     .seen_to(120.0)
 }
 
-/// Eighteen fronds of as many pairs of leaflets.
+/// Eighteen fronds, each a rib that bows down and pairs of leaflets along it.
 pub(super) fn fern() -> Kind {
-    Kind::new("fern", Foliage, [1.2, 0.8, 1.2], |fern| {
+    Kind::new("fern", SmallProp, [1.2, 0.8, 1.2], |fern| {
+        let bow = |along: f64| 1.9 * along * (1.25 - along);
         for (i, frond) in ring(18, 0.0, 0.0).into_iter().enumerate() {
             let reach = 0.48 + 0.12 * even_unit(i);
-            let leaflets = (0..36).map(|leaflet| {
-                let along = 0.02 + 0.96 * f64::from(leaflet / 2) / 17.0;
+            let rib = field([0.03, 1.0], [1, 9], |_, z| bow(z + 0.5));
+            fern.put("leaf", rib, [frond.by(0.0, 0.0, 0.5 * reach).stretched([1.0, 1.0, reach])]);
+            let leaflets = (0..26).map(|leaflet| {
+                let along = 0.02 + 0.96 * f64::from(leaflet / 2) / 12.0;
                 let side = if leaflet % 2 == 0 { 75.0 } else { -75.0 };
-                let up = 1.9 * along * (1.25 - along);
-                let length = 1.0 - 0.7 * along;
-                frond
-                    .by(0.0, up, along * reach)
-                    .pitch(80.0)
-                    .yaw(180.0)
-                    .roll(side)
-                    .stretched([1.0, length, 1.0])
+                let lying = frond.by(0.0, bow(along), along * reach).pitch(80.0).yaw(180.0);
+                lying.roll(side).stretched([1.0, 1.0 - 0.7 * along, 1.0])
             });
-            fern.put("leaf", card([0.035, 0.14]), leaflets);
+            fern.put("leaf", card([0.045, 0.14]), leaflets);
         }
     })
     .seen_to(60.0)
@@ -154,7 +151,7 @@ pub(super) fn rock() -> Kind {
 }
 
 pub(super) fn log() -> Kind {
-    Kind::new("log", LargeProp, [5.0, 0.7, 0.7], |log| {
+    Kind::new("log", SmallProp, [5.0, 0.7, 0.7], |log| {
         let lying = between([-2.5, 0.32, 0.0], [2.5, 0.32, 0.0]);
         log.put("bark", cylinder(0.32, 1.0, 64), [lying]);
         let stubs =

@@ -2,7 +2,7 @@
 
 use super::foliage::{Crown, boughs};
 use super::kind::Kind;
-use super::model::Class::{Foliage, LargeProp};
+use super::model::Class::{LargeProp, SmallProp};
 use super::place::{at, lattice, ring, row, strewn};
 use super::solid::{cylinder, facade, field, hoop, lathe, rounded, sphere, torus, tube};
 
@@ -76,7 +76,7 @@ pub(super) fn bus() -> Kind {
 }
 
 pub(super) fn street_lamp() -> Kind {
-    Kind::new("street lamp", LargeProp, [1.8, 8.0, 0.4], |lamp| {
+    Kind::new("street lamp", SmallProp, [1.8, 8.0, 0.4], |lamp| {
         lamp.put("steel", tube([0.1, 0.07], 7.2, 32), [at(-0.85, 0.0, 0.0)]);
         lamp.put("steel", hoop(0.75, 0.05, 180.0, [32, 16]), [at(-0.1, 7.2, 0.0).pitch(-90.0)]);
         lamp.put("steel", rounded([0.4, 0.3, 0.4], 0.08, 6), [at(0.65, 7.0, 0.0)]);
@@ -86,7 +86,7 @@ pub(super) fn street_lamp() -> Kind {
 }
 
 pub(super) fn traffic_light() -> Kind {
-    Kind::new("traffic light", LargeProp, [0.3, 3.6, 0.5], |light| {
+    Kind::new("traffic light", SmallProp, [0.3, 3.6, 0.5], |light| {
         light.put("steel", tube([0.08, 0.06], 3.5, 32), [at(0.0, 0.0, 0.0)]);
         let heads = [0.0, 180.0].map(|turn| at(0.0, 2.7, 0.0).yaw(turn));
         let lenses = || {
@@ -104,23 +104,23 @@ pub(super) fn traffic_light() -> Kind {
 }
 
 pub(super) fn bench() -> Kind {
-    Kind::new("bench", LargeProp, [1.8, 0.9, 0.7], |bench| {
-        let seat = row(5, [0.0, 0.42, -0.1], [0.0, 0.44, 0.3]);
-        let back = row(4, [0.0, 0.5, -0.17], [0.0, 0.85, -0.28]).into_iter().map(|slat| slat.pitch(75.0));
+    Kind::new("bench", SmallProp, [1.8, 0.9, 0.7], |bench| {
+        let seat = row(5, [0.0, 0.42, -0.16], [0.0, 0.44, 0.24]);
+        let back = row(4, [0.0, 0.5, -0.23], [0.0, 0.85, -0.34]).into_iter().map(|slat| slat.pitch(75.0));
         let slats: Vec<_> = seat.into_iter().chain(back).collect();
         let bolts = slats.iter().flat_map(|slat| {
             row(4, [-0.7, 0.02, 0.0], [0.7, 0.02, 0.0]).into_iter().map(move |bolt| slat.to(bolt))
         });
         bench.put("iron", cylinder(0.008, 0.015, 10), bolts.collect::<Vec<_>>());
         bench.put("wood", rounded([1.8, 0.03, 0.09], 0.01, 4), slats);
-        let hoops = lattice([2, 1, 2], [-0.7, 0.21, -0.06], [0.7, 0.21, 0.2]);
+        let hoops = lattice([2, 1, 2], [-0.7, 0.21, -0.12], [0.7, 0.21, 0.14]);
         bench.put("iron", torus(0.185, 0.025, [32, 16]), hoops.into_iter().map(|hoop| hoop.roll(90.0)));
     })
     .seen_to(120.0)
 }
 
 pub(super) fn bin() -> Kind {
-    Kind::new("bin", LargeProp, [0.6, 1.0, 0.6], |bin| {
+    Kind::new("bin", SmallProp, [0.6, 1.0, 0.6], |bin| {
         let can = [[0.0, 0.0], [0.2, 0.0], [0.26, 0.9], [0.25, 0.9], [0.2, 0.1], [0.0, 0.1]];
         bin.put("steel", lathe(&can, 48), [at(0.0, 0.0, 0.0)]);
         bin.put("steel", torus(0.26, 0.03, [40, 20]), [at(0.0, 0.5, 0.0).scaled(0.93), at(0.0, 0.92, 0.0)]);
@@ -129,7 +129,7 @@ pub(super) fn bin() -> Kind {
 }
 
 pub(super) fn market_stall() -> Kind {
-    Kind::new("market stall", LargeProp, [4.0, 3.0, 3.0], |stall| {
+    Kind::new("market stall", SmallProp, [4.0, 3.0, 3.0], |stall| {
         let roof = |x: f64, z: f64| 2.9 - 0.2 * z * z + 0.02 * x;
         stall.put("cloth", field([4.0, 3.0], [24, 24], roof), [at(0.0, 0.0, 0.0)]);
         stall.put("wood", cylinder(0.04, 2.65, 20), lattice([3, 1, 2], [-1.8, 0.0, -1.0], [1.8, 0.0, 1.0]));
@@ -171,7 +171,7 @@ pub(super) fn fountain() -> Kind {
 }
 
 pub(super) fn street_tree() -> Kind {
-    Kind::new("street tree", Foliage, [6.0, 9.0, 6.0], |tree| {
+    Kind::new("street tree", SmallProp, [6.0, 9.0, 6.0], |tree| {
         tree.put("bark", tube([0.2, 0.12], 4.5, 16), [at(0.0, 0.0, 0.0)]);
         boughs(tree, [11, 16], 0.1, [2.5, 4.4], ([0.0, 5.8, 0.0], [1.8, 1.8, 1.8]));
         let size = [0.25, 0.45];

@@ -1,7 +1,7 @@
 //! Kinds that a building is built of. Sizes in metres.
 
 use super::kind::Kind;
-use super::model::Class::{LargeProp, LevelArchitecture, SmallProp};
+use super::model::Class::{LevelArchitecture, SmallProp};
 use super::place::{at, between, lattice, pair, row};
 use super::solid::{block, card, cylinder, facade, frustum, lathe, rounded, sphere, torus, tube};
 
@@ -29,8 +29,8 @@ pub(super) fn window_wall(length: f64, height: f64) -> Kind {
         );
         wall.put("plaster", block([length, height, 0.1]), [at(0.0, 0.0, 0.0)]);
         let windows = row(3, [-length / 3.0, height / 2.0, 0.09], [length / 3.0, height / 2.0, 0.09]);
-        let bars =
-            [-0.77, 0.0, 0.77].map(|off| [at(0.0, off - 0.03, 0.0), at(off + 0.03, 0.0, 0.0).roll(90.0)]);
+        let bars = [-0.77, 0.0, 0.77]
+            .map(|off| [at(0.0, off - 0.03, 0.0), at(off + 0.03, 0.0, 0.0).roll(90.0).scaled(0.97)]);
         let frames = windows.iter().flat_map(|window| bars.as_flattened().iter().map(|bar| window.to(*bar)));
         wall.put("frame", rounded([1.6, 0.06, 0.06], 0.01, 2), frames);
         let handles =
@@ -98,7 +98,7 @@ pub(super) fn pendant_lamp() -> Kind {
 
 /// The hero of the atrium: a cloud of rings and spheres on strings, 50 000 triangles.
 pub(super) fn mobile() -> Kind {
-    Kind::new("mobile", LargeProp, [5.4, 9.0, 5.4], |mobile| {
+    Kind::new("mobile", SmallProp, [5.4, 9.0, 5.4], |mobile| {
         let hung = |i: u32| {
             let (turn, out, up) = (137.5 * f64::from(i), 0.7 + 0.07 * f64::from(i), 0.25 * f64::from(i));
             at(0.0, up + 0.56, 0.0).yaw(turn).by(0.0, 0.0, out)
@@ -117,7 +117,7 @@ pub(super) fn mobile() -> Kind {
 }
 
 pub(super) fn whiteboard() -> Kind {
-    Kind::new("whiteboard", SmallProp, [2.4, 1.8, 0.08], |board| {
+    Kind::new("whiteboard", SmallProp, [2.4, 1.8, 0.078], |board| {
         board.put("enamel", rounded([2.4, 1.2, 0.03], 0.01, 3), [at(0.0, 0.6, 0.0)]);
         board.put("enamel", card([2.3, 1.1]), [at(0.0, 0.65, 0.016)]);
         board.put("steel", cylinder(0.02, 0.62, 16), pair(1.1, 0.0, 0.0));

@@ -1,12 +1,12 @@
 //! Kinds that a city is built of. Sizes in metres.
 
 use super::kind::Kind;
-use super::model::Class::LevelArchitecture;
+use super::model::Class::Vista;
 use super::place::{at, lattice, pair, ring, row};
 use super::solid::{block, card, cylinder, direction, facade, frustum, prism, rounded, torus, tube, walls};
 
 pub(super) fn road() -> Kind {
-    Kind::new("road", LevelArchitecture, [75.0, 0.4, 30.0], |road| {
+    Kind::new("road", Vista, [75.0, 0.4, 30.0], |road| {
         road.put("asphalt", block([75.0, 0.2, 20.0]), [at(0.0, 0.0, 0.0)]);
         road.put("stone", block([75.0, 0.35, 4.9]), [-12.55, 12.55].map(|z| at(0.0, 0.0, z)));
         let kerbs = lattice([75, 1, 2], [-37.0, 0.17, -10.05], [37.0, 0.17, 10.05]);
@@ -17,7 +17,7 @@ pub(super) fn road() -> Kind {
 
 /// A glass tower of 34 storeys between bands of steel. Windows are pockets a foot deep.
 pub(super) fn glass_tower() -> Kind {
-    Kind::new("glass tower", LevelArchitecture, [36.0, 160.0, 36.0], |tower| {
+    Kind::new("glass tower", Vista, [36.0, 160.0, 36.0], |tower| {
         tower.put("glass", rounded([35.0, 150.0, 35.0], 2.4, 8), [at(0.0, 0.0, 0.0)]);
         let side = facade([30.0, 148.0], [8, 34], [3.2, 3.6], 0.3);
         tower.put("glass", side, ring(4, 17.82, 1.0));
@@ -52,7 +52,7 @@ fn rounded_square(half: f64, radius: f64) -> Vec<[f64; 2]> {
 
 /// A stone tower with deep windows and set-backs.
 pub(super) fn stone_tower() -> Kind {
-    Kind::new("stone tower", LevelArchitecture, [30.0, 110.0, 30.0], |tower| {
+    Kind::new("stone tower", Vista, [30.0, 110.0, 30.0], |tower| {
         let tiers = [(29.0, 46.0, 0.0, [8, 10]), (23.0, 31.0, 46.0, [6, 8]), (17.0, 15.0, 77.0, [4, 3])];
         for (width, height, base, [columns, rows]) in tiers {
             let shell = walls([width, height, width], [columns, columns, rows], [1.5, 2.6], 0.4);
@@ -71,7 +71,7 @@ pub(super) fn stone_tower() -> Kind {
 }
 
 pub(super) fn apartment_block() -> Kind {
-    Kind::new("apartment block", LevelArchitecture, [40.0, 24.0, 16.0], |block_| {
+    Kind::new("apartment block", Vista, [40.0, 24.0, 16.0], |block_| {
         block_.put("brick", walls([39.0, 20.5, 13.4], [10, 4, 6], [1.6, 1.9], 0.25), [at(0.0, 0.0, 0.0)]);
         let gable = [[-7.6, 0.0], [7.6, 0.0], [7.6, -0.3], [0.0, -3.2], [-7.6, -0.3]];
         let roof = at(-20.0, 20.4, 0.0).yaw(90.0).pitch(90.0);
@@ -93,7 +93,7 @@ pub(super) fn apartment_block() -> Kind {
 }
 
 pub(super) fn shop_row() -> Kind {
-    Kind::new("shop row", LevelArchitecture, [30.0, 12.0, 14.0], |shops| {
+    Kind::new("shop row", Vista, [30.0, 12.0, 14.0], |shops| {
         shops.put("brick", walls([29.0, 7.5, 11.5], [9, 3, 2], [1.8, 2.2], 0.4), [at(0.0, 3.8, 0.0)]);
         shops.put("glass", walls([29.0, 3.8, 11.5], [6, 2, 1], [3.8, 2.8], 0.5), [at(0.0, 0.0, 0.0)]);
         shops.put("brick", block([29.8, 0.7, 12.3]), [at(0.0, 11.3, 0.0)]);
@@ -111,7 +111,7 @@ pub(super) fn shop_row() -> Kind {
 }
 
 pub(super) fn house() -> Kind {
-    Kind::new("house", LevelArchitecture, [12.0, 9.0, 10.0], |house| {
+    Kind::new("house", Vista, [12.0, 9.0, 10.0], |house| {
         house.put("plaster", walls([11.2, 6.0, 9.2], [4, 2, 2], [1.0, 1.3], 0.2), [at(0.0, 0.0, 0.0)]);
         let gable = [[-4.9, 0.0], [4.9, 0.0], [0.0, -2.6]];
         house.put("tile", prism(&gable, 11.8), [at(-5.9, 5.9, 0.0).yaw(90.0).pitch(90.0)]);
