@@ -13,7 +13,8 @@
 //! # What a seed fixes
 //!
 //! Random numbers come from PCG and are made into positions by the arithmetic of this module; sines and cosines are
-//! its own, and lengths are rounded to millimetres, in meshes to 2⁻¹⁴ m: no platform and no later version of a dependency changes a scene.
+//! its own, and lengths are rounded to millimetres, in meshes to 2⁻¹⁴ m: no platform and no later version of a
+//! dependency changes a scene.
 //! The plans (which room is where) are the same for all seeds, so that a storyboard fits them all; what stands in the
 //! rooms, how large, and how the camera sways is the seed's.
 
