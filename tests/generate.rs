@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::fs;
 use std::path::Path;
 
-use glam::{DVec3, Vec2};
+use glam::{DVec3, Vec2, Vec3};
 use lod_budget::files::{CameraPath, Pose, Scene};
 use lod_budget::scene::Object;
 use lod_budget::sim::generate::{Recipe, scatter, scatter_path};
@@ -45,6 +45,33 @@ fn the_bundled_files_are_what_the_generators_make() {
         assert_eq!(Scene::read(&file("json")).expect("a scene"), scene);
         assert_eq!(CameraPath::read(&file("csv")).expect("a path"), path);
     }
+}
+
+/// Kinds as meshes: nothing missing, nothing without an area, on the grid of a platform that has no grid of its own.
+#[test]
+fn models_are_sound() {
+    for model in Recipe::ALL.into_iter().flat_map(Recipe::models) {
+        let name = &model.name;
+        let ends: Vec<_> = model.materials.iter().map(|(_, run)| (run.start, run.end)).collect();
+        assert!(
+            ends.windows(2).all(|w| w[0].1 == w[1].0) && ends.iter().all(|(a, b)| a < b),
+            "{name}: {ends:?}"
+        );
+        assert_eq!((ends[0].0, ends[ends.len() - 1].1), (0, model.triangles.len()), "{name}");
+        let materials: HashSet<_> = model.materials.iter().map(|(material, _)| material).collect();
+        assert_eq!(materials.len(), ends.len(), "{name}: a material has two runs");
+        let steps = |x: f32| x * 16384.0 == (x * 16384.0).round();
+        assert!(model.positions.iter().all(|p| p.to_array().into_iter().all(steps)), "{name}");
+        let used: HashSet<u32> = model.triangles.iter().flatten().copied().collect();
+        assert_eq!(used.len(), model.positions.len(), "{name}: a position is of no use");
+        let flat =
+            model.triangles.iter().filter(|t| area(t.map(|corner| model.positions[corner as usize])) == 0.0);
+        assert_eq!(flat.count(), 0, "{name}: triangles without an area");
+    }
+}
+
+fn area([a, b, c]: [Vec3; 3]) -> f32 {
+    (b - a).cross(c - a).length() / 2.0
 }
 
 #[test]

@@ -8,8 +8,8 @@ use glam::DVec3;
 use super::dice::Dice;
 use super::draft::{Draft, Stock};
 use super::film::{Film, Key, key};
-use super::indoors as kinds;
-use crate::files::{CameraPath, Scene};
+use super::{indoors, structure};
+use crate::files::CameraPath;
 
 /// One letter per module: `o` office, `d` dense office, `m` meeting room, `l` laboratory, `b` library, `r` server
 /// room, `t` lecture hall, `k` kitchen, `w` store room, `.` gallery, `S` stairs, `A` atrium.
@@ -25,14 +25,14 @@ const MODULE: f64 = 6.0;
 const STOREY: f64 = 4.0;
 const DESKS_OF_A_DENSE_OFFICE: usize = 6;
 
-pub(super) fn scene(seed: u64) -> Scene {
+pub(super) fn draft(seed: u64) -> Draft {
     let mut site = Site::new(seed);
     for (storey, plan) in STOREYS.iter().enumerate() {
         let plan = Plan { rows: plan, floor: STOREY * storey as f64 };
         plan.modules().for_each(|module| site.build(&plan, module));
     }
     site.furnish_atrium();
-    site.draft.finish()
+    site.draft
 }
 
 /// One storey.
@@ -107,32 +107,32 @@ struct Stocks {
 impl Stocks {
     fn new(draft: &mut Draft) -> Self {
         Self {
-            slab: draft.stock(kinds::slab(MODULE)),
-            wall: draft.stock(kinds::wall(MODULE, STOREY)),
-            window_wall: draft.stock(kinds::window_wall(MODULE, STOREY)),
-            door_wall: draft.stock(kinds::door_wall(MODULE, STOREY)),
-            railing: draft.stock(kinds::railing(MODULE)),
-            stairs: draft.stock(kinds::stairs()),
-            column: draft.stock(kinds::column()),
-            lamp: draft.stock(kinds::pendant_lamp()),
-            mobile: draft.stock(kinds::mobile()),
-            planter: draft.stock(kinds::planter()),
-            chair: draft.stock(kinds::office_chair()),
-            desk: draft.stock(kinds::desk()),
-            computer: draft.stock(kinds::computer()),
-            desk_lamp: draft.stock(kinds::desk_lamp()),
-            shelf: draft.stock(kinds::shelf_of_books()),
-            cabinet: draft.stock(kinds::filing_cabinet()),
-            sofa: draft.stock(kinds::sofa()),
-            table: draft.stock(kinds::round_table()),
-            crockery: draft.stock(kinds::crockery()),
-            glassware: draft.stock(kinds::glassware()),
-            bench: draft.stock(kinds::lab_bench()),
-            rack: draft.stock(kinds::server_rack()),
-            seat: draft.stock(kinds::theatre_seat()),
-            whiteboard: draft.stock(kinds::whiteboard()),
-            coffee: draft.stock(kinds::coffee_machine()),
-            piano: draft.stock(kinds::grand_piano()),
+            slab: draft.stock(structure::slab(MODULE)),
+            wall: draft.stock(structure::wall(MODULE, STOREY)),
+            window_wall: draft.stock(structure::window_wall(MODULE, STOREY)),
+            door_wall: draft.stock(structure::door_wall(MODULE, STOREY)),
+            railing: draft.stock(structure::railing(MODULE)),
+            stairs: draft.stock(structure::stairs()),
+            column: draft.stock(structure::column()),
+            lamp: draft.stock(structure::pendant_lamp()),
+            mobile: draft.stock(structure::mobile()),
+            planter: draft.stock(indoors::planter()),
+            chair: draft.stock(indoors::office_chair()),
+            desk: draft.stock(indoors::desk()),
+            computer: draft.stock(indoors::computer()),
+            desk_lamp: draft.stock(indoors::desk_lamp()),
+            shelf: draft.stock(indoors::shelf_of_books()),
+            cabinet: draft.stock(structure::filing_cabinet()),
+            sofa: draft.stock(indoors::sofa()),
+            table: draft.stock(indoors::round_table()),
+            crockery: draft.stock(indoors::crockery()),
+            glassware: draft.stock(indoors::glassware()),
+            bench: draft.stock(structure::lab_bench()),
+            rack: draft.stock(structure::server_rack()),
+            seat: draft.stock(indoors::theatre_seat()),
+            whiteboard: draft.stock(structure::whiteboard()),
+            coffee: draft.stock(indoors::coffee_machine()),
+            piano: draft.stock(indoors::grand_piano()),
         }
     }
 }
@@ -146,7 +146,7 @@ struct Site {
 
 impl Site {
     fn new(seed: u64) -> Self {
-        let mut draft = Draft::new("building");
+        let mut draft = Draft::new("building", include_str!("../../../scenes/tables/building.json"));
         let stocks = Stocks::new(&mut draft);
         Self { draft, stocks, dice: Dice::new(seed, 1) }
     }

@@ -8,8 +8,8 @@ use glam::DVec3;
 use super::dice::Dice;
 use super::draft::{Draft, Stock};
 use super::film::{Film, Key, key};
-use super::urban as kinds;
-use crate::files::{CameraPath, Scene};
+use super::{street, urban};
+use crate::files::CameraPath;
 
 /// One letter per block: `h` houses with gardens, `s` shops, `a` apartments, `T` towers, `p` park, `q` market square.
 const DISTRICTS: [&str; 10] = [
@@ -28,7 +28,7 @@ const DISTRICTS: [&str; 10] = [
 const PITCH: f64 = 150.0;
 const STREET: f64 = 30.0;
 
-pub(super) fn scene(seed: u64) -> Scene {
+pub(super) fn draft(seed: u64) -> Draft {
     let mut town = Town::new(seed);
     for (row, district) in DISTRICTS.iter().enumerate() {
         for (column, use_) in district.bytes().enumerate() {
@@ -37,7 +37,7 @@ pub(super) fn scene(seed: u64) -> Scene {
             town.block(use_, corner + DVec3::new(STREET, 0.0, STREET));
         }
     }
-    town.draft.finish()
+    town.draft
 }
 
 /// What a city is made of.
@@ -62,23 +62,23 @@ struct Stocks {
 impl Stocks {
     fn new(draft: &mut Draft) -> Self {
         let [small_car, saloon, van] =
-            [kinds::small_car(), kinds::saloon(), kinds::van()].map(|kind| draft.stock(kind));
+            [street::small_car(), street::saloon(), street::van()].map(|kind| draft.stock(kind));
         Self {
-            road: draft.stock(kinds::road()),
-            glass_tower: draft.stock(kinds::glass_tower()),
-            stone_tower: draft.stock(kinds::stone_tower()),
-            apartments: draft.stock(kinds::apartment_block()),
-            shops: draft.stock(kinds::shop_row()),
-            house: draft.stock(kinds::house()),
+            road: draft.stock(urban::road()),
+            glass_tower: draft.stock(urban::glass_tower()),
+            stone_tower: draft.stock(urban::stone_tower()),
+            apartments: draft.stock(urban::apartment_block()),
+            shops: draft.stock(urban::shop_row()),
+            house: draft.stock(urban::house()),
             cars: [small_car, small_car, saloon, van],
-            bus: draft.stock(kinds::bus()),
-            lamp: draft.stock(kinds::street_lamp()),
-            traffic_light: draft.stock(kinds::traffic_light()),
-            bench: draft.stock(kinds::bench()),
-            bin: draft.stock(kinds::bin()),
-            stall: draft.stock(kinds::market_stall()),
-            fountain: draft.stock(kinds::fountain()),
-            tree: draft.stock(kinds::street_tree()),
+            bus: draft.stock(street::bus()),
+            lamp: draft.stock(street::street_lamp()),
+            traffic_light: draft.stock(street::traffic_light()),
+            bench: draft.stock(street::bench()),
+            bin: draft.stock(street::bin()),
+            stall: draft.stock(street::market_stall()),
+            fountain: draft.stock(street::fountain()),
+            tree: draft.stock(street::street_tree()),
         }
     }
 }
@@ -91,7 +91,7 @@ struct Town {
 
 impl Town {
     fn new(seed: u64) -> Self {
-        let mut draft = Draft::new("city");
+        let mut draft = Draft::new("city", include_str!("../../../scenes/tables/city.json"));
         let stocks = Stocks::new(&mut draft);
         Self { draft, stocks, dice: Dice::new(seed, 2) }
     }

@@ -6,6 +6,7 @@ use super::kind::Kind;
 use crate::bounds::Sphere;
 use crate::files::Scene;
 use crate::scene::{Object, ObjectId, Settings, TableId};
+use crate::table::LodTable;
 
 /// A kind that a scene has in stock.
 #[derive(Clone, Copy, Debug)]
@@ -16,18 +17,42 @@ pub(super) struct Stock {
 }
 
 /// A scene in the making. Objects get their ids in the order in which they are put down.
-pub(super) struct Draft(Scene);
+pub(super) struct Draft {
+    scene: Scene,
+    kinds: Vec<Kind>,
+    measured: Vec<LodTable>,
+}
 
 impl Draft {
-    pub fn new(name: &str) -> Self {
-        Self(Scene { name: name.into(), ..Scene::default() })
+    /// A scene whose kinds have been measured; `tables` is a scene of their tables, in any order.
+    ///
+    /// # Panics
+    /// Tables come with the crate. That they can be read is held by tests.
+    pub fn new(name: &str, tables: &str) -> Self {
+        let measured =
+            Scene::from_json(tables.as_bytes(), name).expect("the tables that come with the crate").tables;
+        Self { measured, ..Self::of(name) }
     }
 
-    /// Takes a kind into stock.
+    /// A scene whose kinds are tables alone.
+    pub fn of(name: &str) -> Self {
+        let scene = Scene { name: name.into(), ..Scene::default() };
+        Self { scene, kinds: Vec::new(), measured: Vec::new() }
+    }
+
+    /// Takes a kind into stock, with the table that was measured of it.
     pub fn stock(&mut self, kind: Kind) -> Stock {
-        let (table, settings) = (kind.table(), kind.settings());
-        let stock = Stock { table: TableId(self.0.tables.len() as u16), bounds: table.bounds(), settings };
-        self.0.tables.push(table);
+        let measured = self.measured.iter().find(|table| table.name() == kind.name).cloned();
+        let (table, settings) = (measured.unwrap_or_else(|| kind.unmeasured()), kind.settings);
+        self.kinds.push(kind);
+        self.stock_table(table, settings)
+    }
+
+    /// Takes what has but a table into stock.
+    pub fn stock_table(&mut self, table: LodTable, settings: Settings) -> Stock {
+        let stock =
+            Stock { table: TableId(self.scene.tables.len() as u16), bounds: table.bounds(), settings };
+        self.scene.tables.push(table);
         stock
     }
 
@@ -41,14 +66,19 @@ impl Draft {
         let center = at + stock.bounds.center.as_dvec3() * scale;
         let center = Vec3::new(millimetres(center.x), millimetres(center.y), millimetres(center.z));
         let bounds = Sphere::new(center, millimetres(f64::from(stock.bounds.radius) * scale));
-        let id = ObjectId(self.0.objects.len() as u64);
-        self.0.objects.push(Object { id, bounds, table: stock.table, settings: stock.settings });
-        let last = self.0.objects.len() - 1;
-        &mut self.0.objects[last].settings
+        let id = ObjectId(self.scene.objects.len() as u64);
+        self.scene.objects.push(Object { id, bounds, table: stock.table, settings: stock.settings });
+        let last = self.scene.objects.len() - 1;
+        &mut self.scene.objects[last].settings
     }
 
     pub fn finish(self) -> Scene {
-        self.0
+        self.scene
+    }
+
+    /// The kinds in stock, in the order of their tables.
+    pub fn kinds(&self) -> &[Kind] {
+        &self.kinds
     }
 }
 

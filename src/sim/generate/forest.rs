@@ -8,8 +8,8 @@ use super::angle::sin_cos_deg;
 use super::dice::Dice;
 use super::draft::{Draft, Stock};
 use super::film::{Film, Key, key};
-use super::outdoors as kinds;
-use crate::files::{CameraPath, Scene};
+use super::{festival, outdoors};
+use crate::files::CameraPath;
 
 /// Half of a side of the forest.
 const REACH: f64 = 200.0;
@@ -21,13 +21,13 @@ const STAGE: [f64; 2] = [0.0, -32.0];
 /// Half of the width of the path that the visitor comes by.
 const LANE: f64 = 4.0;
 
-pub(super) fn scene(seed: u64) -> Scene {
+pub(super) fn draft(seed: u64) -> Draft {
     let mut forest = Forest::new(seed);
     forest.lay_ground();
     forest.grow();
     forest.build_festival();
     forest.let_people_in();
-    forest.draft.finish()
+    forest.draft
 }
 
 /// Height of the ground: a hill of 6 m in the middle, flat far away.
@@ -61,16 +61,16 @@ impl Stocks {
     fn new(draft: &mut Draft) -> Self {
         let people = [("dancer", "cotton", 6), ("guest in wool", "wool", 2), ("guest in linen", "linen", 0)];
         Self {
-            ground: draft.stock(kinds::ground()),
-            oak: draft.stock(kinds::old_oak()),
-            log: draft.stock(kinds::log()),
-            people: people.map(|(name, dress, folds)| draft.stock(kinds::person(name, dress, folds))),
-            singer: draft.stock(kinds::singer()),
-            tent: draft.stock(kinds::tent()),
-            lantern: draft.stock(kinds::lantern()),
-            stage: draft.stock(kinds::stage()),
-            food: draft.stock(kinds::food_stall()),
-            bench: draft.stock(kinds::bench()),
+            ground: draft.stock(outdoors::ground()),
+            oak: draft.stock(outdoors::old_oak()),
+            log: draft.stock(outdoors::log()),
+            people: people.map(|(name, dress, folds)| draft.stock(festival::person(name, dress, folds))),
+            singer: draft.stock(festival::singer()),
+            tent: draft.stock(festival::tent()),
+            lantern: draft.stock(festival::lantern()),
+            stage: draft.stock(festival::stage()),
+            food: draft.stock(festival::food_stall()),
+            bench: draft.stock(festival::bench()),
         }
     }
 }
@@ -83,7 +83,7 @@ struct Forest {
 
 impl Forest {
     fn new(seed: u64) -> Self {
-        let mut draft = Draft::new("forest");
+        let mut draft = Draft::new("forest", include_str!("../../../scenes/tables/forest.json"));
         let stocks = Stocks::new(&mut draft);
         Self { draft, stocks, dice: Dice::new(seed, 3) }
     }
@@ -97,12 +97,12 @@ impl Forest {
 
     fn grow(&mut self) {
         let growths = [
-            (kinds::beech(), 700, [0.5, 1.3]),
-            (kinds::spruce(), 800, [0.4, 1.2]),
-            (kinds::birch(), 350, [0.6, 1.2]),
-            (kinds::shrub(), 550, [0.5, 1.6]),
-            (kinds::fern(), 500, [0.6, 1.5]),
-            (kinds::rock(), 260, [0.2, 1.6]),
+            (outdoors::beech(), 700, [0.5, 1.3]),
+            (outdoors::spruce(), 800, [0.4, 1.2]),
+            (outdoors::birch(), 350, [0.6, 1.2]),
+            (outdoors::shrub(), 550, [0.5, 1.6]),
+            (outdoors::fern(), 500, [0.6, 1.5]),
+            (outdoors::rock(), 260, [0.2, 1.6]),
         ];
         for (kind, count, scale) in growths {
             let stock = self.draft.stock(kind);

@@ -4,24 +4,17 @@
 //!
 //! # What the tables say
 //!
-//! Every kind of object is made of parametric shapes (blocks, rounded blocks, cylinders, cones, spheres, tori, tubes,
-//! height fields, crowns of leaf cards), and every level says how finely it tessellates each of them, or that it leaves
-//! it out. Triangles and vertices are those of the tessellations. The error of a level is an upper bound on its
-//! two-sided deviation from level 0, by the triangle inequality through the smooth shape:
-//!
-//! - a circle of radius r in n segments deviates by r·(1 − cos(π/n)) ≤ r·π²/(2n²), a surface of revolution by that and
-//!   its profile's deviation; a height field of cells h wide, whose second derivative is at most κ, by κh²/4; a crown
-//!   by half the way across the cell of a leaf;
-//! - a part that is left out counts with how far it sticks out of the parts that stay, or with the reach of the cards
-//!   or box that stand in for it, both stated with the kind.
-//!
-//! The accuracy of a level follows its number of triangles ([`accuracy_of`](crate::table::accuracy_of)). Kinds have
-//! one to six levels, one to five draw calls (a coarse level shares one atlas), 4 to 55 000 triangles.
+//! Every kind of object is a mesh ([`Model`]), put together from tessellated shapes: an office chair from rounded blocks
+//! and rings, a spruce from cones and cards. Its table is what `lod bake` has measured of the mesh, by the preset of its
+//! [`Class`]: the triangles and vertices of levels that were really made, and how far they really are from the finest
+//! one. The tables are stored beside the scenes, so that nobody has to bake to generate. A scatter has no meshes: its
+//! tables follow from formulas for spheres, rounded blocks and tori.
 //!
 //! # What a seed fixes
 //!
 //! Random numbers come from PCG and are made into positions by the arithmetic of this module; sines and cosines are
-//! its own, and lengths are rounded to millimetres: no platform and no later version of a dependency changes a scene.
+//! its own, and lengths are rounded to millimetres, in meshes to 2⁻¹⁴ m: no platform and no later version of a
+//! dependency changes a scene.
 //! The plans (which room is where) are the same for all seeds, so that a storyboard fits them all; what stands in the
 //! rooms, how large, and how the camera sways is the seed's.
 
@@ -30,19 +23,29 @@ mod building;
 mod city;
 mod dice;
 mod draft;
+mod festival;
 mod film;
+mod foliage;
 mod forest;
 mod indoors;
 mod kind;
+mod model;
 mod outdoors;
+mod place;
 mod scatter;
-mod shape;
+mod solid;
+mod street;
+mod structure;
 mod urban;
 
 use std::fmt;
 
 use crate::files::{CameraPath, Scene};
 
+use draft::Draft;
+use kind::Kind;
+
+pub use model::{Class, Model};
 pub use scatter::{scatter, scatter_path};
 
 /// A scene that can be made from a seed. The same seed gives the same scene and the same path on every platform, to
@@ -86,10 +89,19 @@ impl Recipe {
 
     /// Makes the scene.
     pub fn scene(self, seed: u64) -> Scene {
+        self.draft(seed).finish()
+    }
+
+    /// The finest levels of the kinds of object that are in it, in the order of their tables. No seed changes them.
+    pub fn models(self) -> Vec<Model> {
+        self.draft(0).kinds().iter().map(Kind::model).collect()
+    }
+
+    fn draft(self, seed: u64) -> Draft {
         match self {
-            Self::Building => building::scene(seed),
-            Self::City => city::scene(seed),
-            Self::Forest => forest::scene(seed),
+            Self::Building => building::draft(seed),
+            Self::City => city::draft(seed),
+            Self::Forest => forest::draft(seed),
         }
     }
 

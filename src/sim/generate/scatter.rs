@@ -1,13 +1,16 @@
 //! A scatter of any size, for benchmarks.
 
-use glam::DVec3;
+use std::f64::consts::PI;
+
+use glam::{DVec3, Vec3};
 
 use super::dice::Dice;
 use super::draft::{Draft, Stock};
 use super::film::{Film, key};
-use super::kind::Kind;
-use super::shape::Shape;
+use crate::bounds::Sphere;
 use crate::files::{CameraPath, Scene};
+use crate::scene::Settings;
+use crate::table::{LevelRecord, LodTable};
 
 const TABLES: usize = 36;
 /// Ground per object, in square metres: the density stays when the number of objects grows.
@@ -21,8 +24,8 @@ const BLOCK: f64 = 90.0;
 /// the importance and one in eight of half. O(objects), about 0.1 µs each; ids from 0, positions in metres around the
 /// origin.
 pub fn scatter(objects: usize, seed: u64) -> Scene {
-    let mut draft = Draft::new("scatter");
-    let stocks: Vec<Stock> = (0..TABLES).map(|i| draft.stock(kind(i))).collect();
+    let mut draft = Draft::of("scatter");
+    let stocks: Vec<Stock> = (0..TABLES).map(|i| draft.stock_table(table(i), Settings::default())).collect();
     let mut dice = Dice::new(seed, 4);
     let side = (objects as f64 * GROUND).sqrt();
     for _ in 0..objects {
@@ -63,20 +66,79 @@ fn size(dice: &mut Dice) -> f64 {
     0.25 * f64::from(1u32 << octave) * (1.0 + dice.unit())
 }
 
-/// Shapes that fill a ball of radius 1, of one to six levels and of four starting sizes.
-fn kind(index: usize) -> Kind {
-    let side = 2.0 / 3f64.sqrt();
-    let shapes = [
-        Shape::Sphere { radius: side / 2.0 },
-        Shape::RoundedBlock([side; 3], 0.2),
-        Shape::Torus { ring: 0.4, tube: 0.17 },
-    ];
-    let levels = 1 + index % 6;
-    let finest = [128.0, 96.0, 64.0, 48.0][index % 4];
-    let parts = 1 + index as u32 % 3;
-    let shape = shapes[index / 12];
-    let step = if matches!(shape, Shape::RoundedBlock(..)) { 4.0 } else { 1.0 };
-    let segments = std::iter::successors(Some(finest), |segments| Some(segments * (2.0 / 3.0)));
-    let details: Vec<u32> = segments.take(levels).map(|s| (s / step) as u32).collect();
-    Kind::new(format!("scatter {index}"), [side, side, side]).part("grey", shape, parts, &details)
+/// A shape that fills a ball of radius 1, by the segments around it. Its tables follow from formulas.
+#[derive(Clone, Copy)]
+enum Shape {
+    /// By longitude, and half as many latitudes.
+    Sphere,
+    /// A box with rounded edges, one more than the segments of a quarter.
+    RoundedBlock,
+    /// Half as many segments across as around.
+    Torus,
+}
+
+/// Side of the cube in the ball.
+const SIDE: f64 = 1.154_700_538_379_251_7;
+const EDGE: f64 = 0.2;
+const RING: f64 = 0.4;
+const TUBE: f64 = 0.17;
+
+impl Shape {
+    fn triangles(self, n: u32) -> u32 {
+        match self {
+            Self::Sphere => 2 * n * (n / 2 - 1),
+            Self::RoundedBlock => 12 + 16 * (n - 1) * n,
+            Self::Torus => 2 * n * (n / 2),
+        }
+    }
+
+    fn vertices(self, n: u32) -> u32 {
+        match self {
+            Self::Sphere => n * (n / 2 - 1) + 2,
+            Self::RoundedBlock if n == 1 => 24,
+            Self::RoundedBlock => 8 + 8 * (n - 1) * n,
+            Self::Torus => n * (n / 2),
+        }
+    }
+
+    /// How far at most the tessellation is from the smooth shape: a circle of radius r in n segments deviates by
+    /// r·(1 − cos(π/n)) ≤ r·π²/(2n²), and a surface of revolution by that and its profile's deviation.
+    fn deviation(self, n: u32) -> f64 {
+        let sagitta = |radius: f64, segments: u32| radius * PI * PI / f64::from(2 * segments * segments);
+        match self {
+            Self::Sphere => 2.0 * sagitta(SIDE / 2.0, n / 2 * 2),
+            // The sharp corner is √3 times the rounding from the rounding's centre.
+            Self::RoundedBlock if n == 1 => 0.7321 * EDGE,
+            Self::RoundedBlock => 2.0 * sagitta(EDGE, 4 * (n - 1)),
+            Self::Torus => sagitta(RING + TUBE, n) + sagitta(TUBE, n / 2),
+        }
+    }
+}
+
+/// One to three equal shapes, of one to six levels and of four starting sizes.
+fn table(index: usize) -> LodTable {
+    let shape = [Shape::Sphere, Shape::RoundedBlock, Shape::Torus][index / 12];
+    let finest = [128.0, 96.0, 64.0, 48.0][index % 4] / if index / 12 == 1 { 4.0 } else { 1.0 };
+    let details = (0..1 + index % 6).map(|level| (finest * (2.0f64 / 3.0).powi(level as i32)) as u32);
+    let times = 1 + index as u32 % 3;
+    let records = details.clone().map(|n| {
+        let (triangles, vertices) = (times * shape.triangles(n), times * shape.vertices(n));
+        let deviation =
+            if n == finest as u32 { 0.0 } else { shape.deviation(n) + shape.deviation(finest as u32) };
+        LevelRecord {
+            bytes: bytes_of(triangles, vertices),
+            error: Some(((deviation * 1e4).ceil() / 1e4) as f32),
+            ..LevelRecord::new(triangles, vertices)
+        }
+    });
+    let bounds = Sphere::new(Vec3::new(0.0, (SIDE / 2.0) as f32, 0.0), 1.0);
+    LodTable::new(format!("scatter {index}"), bounds, records.collect())
+        .expect("finite, and of at least one level")
+}
+
+/// 32 bytes a vertex (position, normal, tangent and texture coordinates, packed) and three indices a triangle, of two
+/// bytes where they suffice.
+fn bytes_of(triangles: u32, vertices: u32) -> u64 {
+    let index = if vertices > 1 << 16 { 4 } else { 2 };
+    32 * u64::from(vertices) + 3 * index * u64::from(triangles)
 }
