@@ -122,6 +122,22 @@ fn no_triangle_of_a_smooth_surface_turns_over() {
     }
 }
 
+/// A tube without rings along it, whose triangles are all slivers.
+#[test]
+fn a_plain_cylinder_gets_fewer_sides() {
+    let sides = 64;
+    let around = |i: u32| std::f32::consts::TAU * i as f32 / sides as f32;
+    let rim = |y: f32| (0..sides).map(move |i| Vec3::new(0.16 * around(i).cos(), y, 0.16 * around(i).sin()));
+    let next = |i: u32| (i + 1) % sides;
+    let cylinder = Surface {
+        positions: rim(0.0).chain(rim(5.0)).collect(),
+        triangles: (0..sides)
+            .flat_map(|i| [[i, i + sides, next(i)], [next(i), i + sides, next(i) + sides]])
+            .collect(),
+    };
+    assert_eq!(to(&cylinder, 24).mesh.triangles.len(), 24);
+}
+
 /// Each turn was less than the guard allows, but a triangle may turn many times.
 #[test]
 fn turns_do_not_add_up_until_a_triangle_is_over() {
