@@ -87,7 +87,7 @@
 //! | `ecs` | components and synchronisation with hecs (feature `hecs`) |
 //! | *rooms* | |
 //! | `files` | scenes, camera paths and instances from disk (feature `files`) |
-//! | `bake` | from meshes to levels: files, simplification, measured deviation; under way (feature `bake`) |
+//! | `bake` | from meshes to levels: files, simplification, measured chains, LOD tables (feature `bake`) |
 //! | `sim` | simulated machines, trials, metrics and scenes made from a seed (feature `sim`) |
 //!
 //! # Features

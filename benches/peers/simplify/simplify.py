@@ -43,7 +43,7 @@ def parse():
     parser.add_argument("--rounds", type=int, default=3, help="times are the least of so many rounds")
     parser.add_argument("--variants", action="store_true", help="other settings of the contestants too")
     parser.add_argument("--quick", action="store_true", help="does it run? writes nothing")
-    return parser.parse_args()
+    return parser.parse_intermixed_args()
 
 
 def meshes(program, given, folder):
