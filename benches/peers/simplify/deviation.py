@@ -5,7 +5,7 @@ import math
 import pymeshlab
 
 SAMPLES = 500_000
-"""Points per pass, spread evenly over the surface."""
+"""Points per pass, spread evenly over the surface, unless asked for another number."""
 
 
 class Original:

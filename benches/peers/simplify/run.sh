@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Simplifies with everybody and measures what comes of it: docs/simplification.md and docs/simplification.csv.
 #
-#     run.sh [--rounds N] [--variants] [--quick] [MESH]…
+#     run.sh [--rounds N] [--samples N] [--variants] [--quick] [MESH]…
 #
 # MESH is a file of any format that `lod` reads, plain or .gz, besides the three meshes that are made. Times are the
-# least of N rounds, 3 if not said. --variants tries other settings of the contestants too. --quick is a glance at
-# whether it runs, and writes nothing.
+# least of N rounds, 3 if not said, distances from so many samples, 500 000 if not said. The page is written anew after
+# every mesh. --variants tries other settings of the contestants too. --quick is a glance at whether it runs, and writes
+# nothing.
 set -euo pipefail
 home="$(cd "$(dirname "$0")" && pwd)"
 

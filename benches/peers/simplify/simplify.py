@@ -1,4 +1,4 @@
-"""simplify.py PROGRAM [--rounds N] [--variants] [--quick] [MESH…]: everybody's simplifications, measured alike.
+"""Everybody's simplifications of the same meshes, measured alike.
 
 PROGRAM is `simplify` of this package; run.sh builds it. Writes docs/simplification.md and docs/simplification.csv.
 """
@@ -32,8 +32,7 @@ def main():
                 rows += found
             if arguments.quick:
                 break
-    if not arguments.quick:
-        report.write(rows, arguments.rounds, DOCS)
+            report.write(rows, arguments.rounds, DOCS)
 
 
 def parse():
@@ -43,18 +42,21 @@ def parse():
     parser.add_argument("--rounds", type=int, default=3, help="times are the least of so many rounds")
     parser.add_argument("--variants", action="store_true", help="other settings of the contestants too")
     parser.add_argument("--quick", action="store_true", help="does it run? writes nothing")
-    return parser.parse_intermixed_args()
+    parser.add_argument("--samples", type=int, default=deviation.SAMPLES, help="points per measuring pass")
+    arguments = parser.parse_intermixed_args()
+    deviation.SAMPLES = arguments.samples
+    return arguments
 
 
 def meshes(program, given, folder):
     """All meshes as PLY of single precision, welded and repaired by lod-budget, so that all start from the same."""
-    made = contestants.ask(program, "shapes", folder)
-    yield from (folder / f"{name}.ply" for name in made)
     for path in given:
         plain = unpacked(path, folder)
         clean = folder / f"{plain.stem}.ply"
         contestants.ask(program, "clean", plain, clean)
         yield clean
+    made = contestants.ask(program, "shapes", folder)
+    yield from (folder / f"{name}.ply" for name in made)
 
 
 def unpacked(path, folder):
