@@ -122,6 +122,23 @@ fn no_triangle_of_a_smooth_surface_turns_over() {
     }
 }
 
+/// A ball and a small one far away, whose last triangles lie in no plane's way.
+#[test]
+fn an_error_keeps_parts_that_free_topology_could_drop() {
+    let mut both = icosphere(6);
+    let first = both.positions.len() as u32;
+    let Surface { positions, triangles } = icosphere(2);
+    both.positions.extend(positions.iter().map(|&p| 0.2 * p + 5.0 * Vec3::X));
+    both.triangles.extend(triangles.iter().map(|t| t.map(|v| v + first)));
+    let mesh = Mesh::from(both);
+    let method = GarlandHeckbert { topology: Topology::Free, ..Default::default() };
+    let has_small = |target| {
+        let result = simplify(&method, &Task::new(&mesh, target));
+        result.mesh.positions.iter().any(|p| p.x > 4.0)
+    };
+    assert!(has_small(Target::error(1e-3)) && !has_small(Target::triangles(8)));
+}
+
 /// A tube without rings along it, whose triangles are all slivers.
 #[test]
 fn a_plain_cylinder_gets_fewer_sides() {

@@ -55,11 +55,18 @@ impl Greedy<'_> {
     /// hole closes. That pairs without an edge join is what they are for.
     fn price(&self, step: &Step) -> Verdict {
         let Move { kept, gone, .. } = step.way;
-        let area = self.areas[kept as usize] + self.areas[gone as usize];
-        let price = TOPOLOGY_MOVES * TOPOLOGY_MOVES * area * self.reach(kept).max(self.reach(gone));
-        let joins = self.around().edge(kept, gone).next().is_none();
-        let is_due = joins || self.is_free || self.choices[kept as usize].cost() >= price;
-        if is_due { Verdict::Yes } else { Verdict::For(price) }
+        if self.around().edge(kept, gone).next().is_none() {
+            return Verdict::Yes;
+        }
+        let moved = TOPOLOGY_MOVES * TOPOLOGY_MOVES * self.reach(kept).max(self.reach(gone));
+        let price = (self.areas[kept as usize] + self.areas[gone as usize]) * moved;
+        if self.in_units(f64::from(moved)) > self.most {
+            Verdict::No
+        } else if self.is_free || self.choices[kept as usize].cost() >= price {
+            Verdict::Yes
+        } else {
+            Verdict::For(price)
+        }
     }
 
     /// The squared length of the longest edge at a vertex.
