@@ -48,6 +48,26 @@ proptest! {
         prop_assert_eq!(euler(&surface), characteristic);
     }
 
+    /// The record is the twin: done again on a bare list of triangles, it leaves what the method leaves.
+    #[test]
+    fn the_record_done_again_is_the_result((mesh, _) in closed(), share in 0.0..1.0f64) {
+        let target = Target::triangles((share * mesh.triangles.len() as f64) as usize);
+        let (result, record) =
+            GarlandHeckbert::default().record(&Task::new(&mesh, target), &mut quietly).expect("it keeps the rules");
+        let mut positions = mesh.positions.clone();
+        let mut triangles = mesh.surface().triangles;
+        for step in &record {
+            positions[step.kept as usize] = step.position;
+            triangles.iter_mut().flatten().filter(|v| **v == step.gone).for_each(|v| *v = step.kept);
+        }
+        triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
+        let places = |[a, b, c]: [u32; 3], of: &[Vec3]| [a, b, c].map(|v| of[v as usize]);
+        let again: Vec<[Vec3; 3]> = triangles.into_iter().map(|t| places(t, &positions)).collect();
+        let surface = result.mesh.surface();
+        let left: Vec<[Vec3; 3]> = surface.triangles.iter().map(|&t| places(t, &surface.positions)).collect();
+        prop_assert_eq!(again, left);
+    }
+
     #[test]
     fn sheets_stay_sheets_and_keep_their_border(
         (side, seed, share) in (10..20u32, any::<u32>(), 0.2..1.0f64),

@@ -24,6 +24,8 @@ pub use placement::Placement;
 
 use std::ops::ControlFlow;
 
+use glam::Vec3;
+
 use super::{Progress, Simplified, Simplifier, SimplifyError, Stopped, Target, Task};
 use greedy::Greedy;
 
@@ -79,6 +81,41 @@ impl Default for GarlandHeckbert {
             least_turn: 0.2,
             least_shape: 0.02,
         }
+    }
+}
+
+/// One contraction of two vertices, named as in the mesh of the task: what progressive meshes and vertex hierarchies
+/// are made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contraction {
+    /// The vertex that both become, which goes to `position`.
+    pub kept: u32,
+    /// The vertex that goes.
+    pub gone: u32,
+    /// Where they go.
+    pub position: Vec3,
+    /// The error as the method estimates it, in object units. No bound of the deviation, and it may fall.
+    pub error: f32,
+}
+
+impl GarlandHeckbert {
+    /// Simplifies as [`Simplifier::simplify`] does and tells every contraction, in order. Triangles that used both of
+    /// its vertices go with it.
+    ///
+    /// # Errors
+    /// As [`Simplifier::simplify`].
+    pub fn record(
+        &self,
+        task: &Task,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(Simplified, Vec<Contraction>), SimplifyError> {
+        task.check()?;
+        let mut greedy = Greedy::new(self, task);
+        let record = greedy.record.insert(Vec::new());
+        record.reserve(task.mesh.positions.len());
+        let stopped = greedy.run(task.target, progress);
+        let record = greedy.record.take().unwrap_or_default();
+        Ok((greedy.finish(stopped), record))
     }
 }
 

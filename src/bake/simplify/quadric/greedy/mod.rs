@@ -20,7 +20,7 @@ use crate::bake::simplify::quadric::guard::{Facing, Guard};
 use crate::bake::simplify::quadric::layer::{Around, Move};
 use crate::bake::simplify::quadric::layers::Layers;
 use crate::bake::simplify::quadric::pairs::Pairs;
-use crate::bake::simplify::quadric::{GarlandHeckbert, Topology};
+use crate::bake::simplify::quadric::{Contraction, GarlandHeckbert, Topology};
 use crate::bake::simplify::queue::Queue;
 use crate::bake::simplify::{Progress, Stopped, Target, Task};
 
@@ -127,6 +127,8 @@ pub(super) struct Greedy<'a> {
     most: f32,
     /// Largest squared error so far, scaled.
     error: f64,
+    /// What was contracted, in order, if somebody wants to know.
+    pub(super) record: Option<Vec<Contraction>>,
     /// The fan of a contracted vertex, in the making.
     fan: Vec<u32>,
     /// What a vertex may be contracted with.
@@ -304,12 +306,21 @@ impl<'a> Greedy<'a> {
         self.quadrics[kept] = step.quadric;
         self.areas[kept] += self.areas[gone];
         self.error = self.error.max(step.error);
+        self.note(step);
         self.heirs[gone] = heir;
         self.marks[kept] |= self.marks[gone] & mark::INHERITED;
         self.merge_fans(heir, parted);
         self.merge_pairs(heir, parted);
         self.marks[gone] = mark::GONE;
         self.choose(heir, None);
+    }
+
+    fn note(&mut self, step: &Step) {
+        let Move { kept, gone, .. } = step.way;
+        let [kept, gone] = [kept, gone].map(|vertex| self.order[vertex as usize]);
+        let contraction =
+            Contraction { kept, gone, position: step.position, error: self.in_units(step.error) };
+        self.record.iter_mut().for_each(|record| record.push(contraction));
     }
 
     /// Gives `kept` the triangles of both but for those at the edge, which go.

@@ -51,6 +51,7 @@ impl<'a> Greedy<'a> {
             is_free: false,
             most: -1.0,
             error: 0.0,
+            record: None,
             fan: Vec::new(),
             partners: Vec::new(),
         };
