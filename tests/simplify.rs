@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use glam::Vec3;
 use lod_budget::bake::shapes::{icosphere, terrain, torus, torus_knot};
 use lod_budget::bake::simplify::{
-    GarlandHeckbert, Placement, Simplified, Simplifier, SimplifyError, Stopped, Target, Task, Topology,
+    Cost, GarlandHeckbert, Placement, Simplified, Simplifier, SimplifyError, Stopped, Target, Task, Topology,
     quietly,
 };
 use lod_budget::bake::{Mesh, Surface};
@@ -227,7 +227,7 @@ fn a_plane_costs_nothing_and_becomes_two_triangles() {
     plane.positions.iter_mut().for_each(|p| p.z = 0.5);
     let result = to(&plane, 2);
     assert_eq!((result.mesh.triangles.len(), result.stopped), (2, Stopped::Triangles));
-    assert!(result.error < 1e-6, "{}", result.error);
+    assert!(result.error < 2e-6, "{}", result.error);
     let surface = result.mesh.surface();
     let area: f64 = surface.triangles.iter().map(|&t| normal(&surface, t).length() / 2.0).sum();
     assert!((area - 1.0).abs() < 1e-5, "{area}");
@@ -438,7 +438,8 @@ proptest! {
     fn the_errors_are_those_of_the_paper((cuts, bump, seed) in (3..6u32, 1e-3..1e-2f32, any::<u32>())) {
         let mut sphere = icosphere(cuts);
         perturb(&mut sphere, bump, seed);
-        let method = GarlandHeckbert { least_turn: 0.0, least_shape: 0.0, ..Default::default() };
+        let method =
+            GarlandHeckbert { cost: Cost::Sum, least_turn: 0.0, least_shape: 0.0, ..Default::default() };
         let slow = by_the_book::errors(&sphere, sphere.triangles.len() / 2);
         let mesh = Mesh::from(sphere);
         for &(triangles, error) in slow.iter().step_by(7) {

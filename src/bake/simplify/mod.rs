@@ -50,7 +50,7 @@ pub use decimate::Decimate;
 pub use error::SimplifyError;
 pub use melax::Melax;
 pub use method::{Method, UnknownMethod};
-pub use quadric::{Attributes, Contraction, GarlandHeckbert, Placement, Topology};
+pub use quadric::{Attributes, Contraction, Cost, GarlandHeckbert, Placement, Topology};
 pub use triangle::TriangleCollapse;
 
 use std::ops::ControlFlow;

@@ -7,10 +7,13 @@
 //! - the best place is held near the middle of the edge by a weak spring, so that flat and straight parts are no
 //!   special case (see [`Placement::Optimal`]);
 //! - among contractions that cost next to nothing the shorter edge goes first, so that flat parts keep good triangles;
+//! - costs lie between the sum and the mean of squared distances, and know of tips (see [`Cost::Balanced`]);
 //! - a contraction that would turn a triangle over or make it a sliver is refused instead of made dearer;
 //! - the queue is lazy: errors only grow, so an edge whose surroundings changed is looked at again when it comes up,
 //!   not before (J. Cohen, D. Manocha, M. Olano, "Simplifying polygonal models using successive mappings", 1997).
 
+mod cost;
+mod distance;
 mod form;
 mod greedy;
 mod guard;
@@ -19,6 +22,7 @@ mod layers;
 mod pairs;
 mod placement;
 
+pub use cost::Cost;
 pub use layers::Attributes;
 pub use placement::Placement;
 
@@ -48,6 +52,8 @@ pub enum Topology {
 pub struct GarlandHeckbert {
     /// Where contracted vertices go.
     pub placement: Placement,
+    /// What orders contractions.
+    pub cost: Cost,
     /// Whether holes may close, and the like.
     pub topology: Topology,
     /// Vertices that are closer than this in the original mesh, in object units, may be contracted without an edge
@@ -73,6 +79,7 @@ impl Default for GarlandHeckbert {
     fn default() -> Self {
         Self {
             placement: Placement::Optimal,
+            cost: Cost::Balanced,
             topology: Topology::Preserved,
             pairs: 0.0,
             border: 10.0,

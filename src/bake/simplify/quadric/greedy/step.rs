@@ -84,12 +84,12 @@ impl Greedy<'_> {
         }
     }
 
-    /// What contracting two vertices costs, in places to the fourth.
+    /// What contracting two vertices costs.
     #[inline]
     pub(super) fn cost(&self, a: u32, b: u32) -> f32 {
         let edge = self.place(b) - self.place(a);
         let sum = self.sum(a, b, edge);
         let spread = SHORTER_FIRST * sum.weight() * edge.length_squared();
-        (self.spot(a, b, edge, &sum).error + spread) as f32
+        self.method.cost.of(self.spot(a, b, edge, &sum).error + spread, sum.weight())
     }
 }

@@ -5,13 +5,18 @@ use glam::DVec3;
 use super::step::Step;
 use super::{Greedy, LARGEST_FAN, mark};
 use crate::bake::simplify::link::{Complex, others};
-use crate::bake::simplify::quadric::Topology;
+use crate::bake::simplify::quadric::distance::distance2;
 use crate::bake::simplify::quadric::layer::Move;
 use crate::bake::simplify::quadric::layers::Layers;
+use crate::bake::simplify::quadric::{Cost, Topology};
 
 /// A contraction that changes the topology costs as if all that went into both ends moved by this share of their longest
 /// edge. Higher keeps small parts at the expense of everything else; lower lets parts go that could be seen.
-const TOPOLOGY_MOVES: f32 = 0.1;
+const TOPOLOGY_MOVES: f64 = 0.03;
+
+/// A contraction costs no less than if this share of all that went into both ends were as far off as the ends will be:
+/// a tip that goes takes a cone with it.
+const TIP: f64 = 0.5;
 
 /// Whether a step may be taken.
 pub(super) enum Verdict {
@@ -36,13 +41,47 @@ impl Greedy<'_> {
         if !may {
             Verdict::No
         } else if self.keeps_topology(kept, gone) {
-            Verdict::Yes
+            self.price_of_tips(step, to)
         } else {
             match self.method.topology {
                 Topology::Preserved => Verdict::No,
-                Topology::Free => self.price(step),
+                Topology::Free => self.price_of_topology(step),
             }
         }
+    }
+
+    /// Quadrics know of planes, and not where they end: a needle may slide back along itself at hardly any cost. So how
+    /// far both ends are from what would be left is looked at, too, when it is a contraction's turn.
+    fn price_of_tips(&self, step: &Step, to: DVec3) -> Verdict {
+        if self.method.cost == Cost::Sum {
+            return Verdict::Yes;
+        }
+        let Move { kept, gone, .. } = step.way;
+        let area = TIP * f64::from(self.areas[kept as usize] + self.areas[gone as usize]);
+        let paid = self.choices[kept as usize].cost();
+        let enough = self.method.cost.sum(paid, area) / area;
+        let distance2 = |end, other| self.distance2_to_rest(end, other, to, enough);
+        let price = self.method.cost.of(area * distance2(kept, gone).max(distance2(gone, kept)), area);
+        if price > paid { Verdict::For(price) } else { Verdict::Yes }
+    }
+
+    /// The squared distance of one end of an edge to the triangles that are left when both have gone to `to`, or a
+    /// distance that is no more than `enough`.
+    fn distance2_to_rest(&self, end: u32, other: u32, to: DVec3, enough: f64) -> f64 {
+        let at = self.place(end);
+        let mut least = at.distance_squared(to);
+        for (vertex, opposite) in [(end, other), (other, end)] {
+            for &triangle in self.fans.of(vertex) {
+                if least <= enough {
+                    return least;
+                }
+                let [p, q] = others(self.triangles[triangle as usize], vertex);
+                if p != opposite && q != opposite {
+                    least = least.min(distance2(at, [to, self.place(p), self.place(q)]));
+                }
+            }
+        }
+        least
     }
 
     fn keeps_topology(&mut self, kept: u32, gone: u32) -> bool {
@@ -53,14 +92,15 @@ impl Greedy<'_> {
 
     /// A step that changes the topology has a price of its own: quadrics know of planes, and not that a part ends or a
     /// hole closes. That pairs without an edge join is what they are for.
-    fn price(&self, step: &Step) -> Verdict {
+    fn price_of_topology(&self, step: &Step) -> Verdict {
         let Move { kept, gone, .. } = step.way;
         if self.around().edge(kept, gone).next().is_none() {
             return Verdict::Yes;
         }
         let moved = TOPOLOGY_MOVES * TOPOLOGY_MOVES * self.reach(kept).max(self.reach(gone));
-        let price = (self.areas[kept as usize] + self.areas[gone as usize]) * moved;
-        if self.in_units(f64::from(moved)) > self.most {
+        let area = f64::from(self.areas[kept as usize] + self.areas[gone as usize]);
+        let price = self.method.cost.of(area * moved, area);
+        if self.in_units(moved) > self.most {
             Verdict::No
         } else if self.is_free || self.choices[kept as usize].cost() >= price {
             Verdict::Yes
@@ -70,10 +110,10 @@ impl Greedy<'_> {
     }
 
     /// The squared length of the longest edge at a vertex.
-    fn reach(&self, vertex: u32) -> f32 {
+    fn reach(&self, vertex: u32) -> f64 {
         let at = self.place(vertex);
         let ring = self.fans.of(vertex).iter().flat_map(|&t| self.triangles[t as usize]);
-        ring.map(|v| self.place(v).distance_squared(at)).fold(0.0, f64::max) as f32
+        ring.map(|v| self.place(v).distance_squared(at)).fold(0.0, f64::max)
     }
 
     /// Whether what is between seams stays whole: two vertices on seams may become one only along a seam.
