@@ -4,14 +4,19 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{Vec2, Vec3, Vec4};
-use lod_budget::bake::chain::{Chain, Length, Limits, Plan, Stops, quietly};
+use lod_budget::bake::chain::{Chain, ChainLevel, Length, Limits, Plan, Stops, quietly};
 use lod_budget::bake::deviation;
 use lod_budget::bake::geomorph::{Fit, Geomorph, GeomorphError};
+use lod_budget::bake::read::gltf;
+use lod_budget::bake::scene::{Options, Scene};
 use lod_budget::bake::shapes::{icosphere, terrain, torus, torus_knot};
 use lod_budget::bake::simplify::{GarlandHeckbert, Method, Simplified, Topology};
 use lod_budget::bake::split::{self, split};
 use lod_budget::bake::weld::weld;
+use lod_budget::bake::write::{LevelOut, Measured, glb};
 use lod_budget::bake::{Group, Mesh, Surface};
+#[cfg(feature = "files")]
+use lod_budget::table::LevelRecord;
 use proptest::prelude::*;
 
 // -- meshes
@@ -505,4 +510,144 @@ fn odd_meshes_morph() {
     }
     let morph = Geomorph::between(&full, &bare, None).expect("both are meshes");
     assert_eq!((&morph.target.normals, &morph.target.uvs), (&full.normals, &full.uvs));
+}
+
+// -- as morph targets
+
+/// The JSON and the bytes of a GLB.
+fn parts(glb: &[u8]) -> (serde_json::Value, &[u8]) {
+    let length = u32::from_le_bytes(glb[12..16].try_into().expect("four bytes")) as usize;
+    (serde_json::from_slice(&glb[20..20 + length]).expect("JSON"), &glb[28 + length..])
+}
+
+/// The rows of an accessor of floats.
+fn rows((json, bytes): &(serde_json::Value, &[u8]), accessor: &serde_json::Value) -> Vec<Vec<f32>> {
+    let accessor = &json["accessors"][accessor.as_u64().expect("an index") as usize];
+    assert_eq!(accessor["componentType"], 5126);
+    let view = &json["bufferViews"][accessor["bufferView"].as_u64().expect("an index") as usize];
+    let width = usize::from(accessor["type"].as_str().expect("a type").as_bytes()[3] - b'0');
+    let start = view["byteOffset"].as_u64().expect("an offset") as usize;
+    let floats = bytes[start..].as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b));
+    let all: Vec<f32> = floats.take(accessor["count"].as_u64().expect("a count") as usize * width).collect();
+    let rows: Vec<Vec<f32>> = all.chunks(width).map(<[f32]>::to_vec).collect();
+    for (bound, of) in [("min", f32::min as fn(f32, f32) -> f32), ("max", f32::max)] {
+        let Some(stated) = accessor[bound].as_array() else { continue };
+        for (i, stated) in stated.iter().enumerate() {
+            let found = rows.iter().map(|row| row[i]).reduce(of).expect("rows");
+            assert_eq!(stated.as_f64(), Some(f64::from(found)), "{bound}");
+        }
+    }
+    rows
+}
+
+fn levels<'a>(chain: &'a Chain, morphs: &'a [Geomorph]) -> Vec<LevelOut<'a>> {
+    let level = |(i, level): (usize, &'a ChainLevel)| LevelOut {
+        measured: Some(Measured {
+            error: level.error,
+            hausdorff: level.deviation.hausdorff,
+            rms: level.deviation.rms(),
+        }),
+        coverage: Some(0.5 / (1 << i) as f32),
+        accuracy: Some(1.0 - i as f32 / 16.0),
+        geomorph: morphs.get(i),
+        ..LevelOut::new(&level.mesh)
+    };
+    chain.levels.iter().enumerate().map(level).collect()
+}
+
+#[test]
+fn a_morph_target_leads_to_the_next_level() {
+    let mut mesh = hard_box(6);
+    mesh.name = "box".into();
+    let half = mesh.triangles.len() / 2;
+    let group = |name: &str, triangles| Group { material: Some(name.into()), triangles, ..Group::default() };
+    mesh.groups = vec![group("a", 0..half), group("b", half..mesh.triangles.len())];
+    let chain = bake(&plan(Method::Quadric, halves()), &mesh);
+    let morphs = chain.geomorphs().expect("all levels are there");
+    let file = glb(&levels(&chain, &morphs)).expect("written");
+    let parts = parts(&file);
+    let meshes = parts.0["meshes"].as_array().expect("a list");
+    assert_eq!(meshes.len(), chain.levels.len());
+    assert!(meshes.last().expect("one")["primitives"][0].get("targets").is_none());
+    for (i, (written, morph)) in meshes.iter().zip(&morphs).enumerate() {
+        assert_eq!(written["weights"], serde_json::json!([0.0]));
+        assert_eq!(
+            written["extras"]["targetNames"],
+            serde_json::json!([format!("geomorph_to_LOD{}", i + 1)])
+        );
+        assert_eq!(written["extras"]["lod_geomorph_max"], f64::from(morph.movement.max));
+        let coarser = &chain.levels[i + 1].mesh.positions;
+        for primitive in written["primitives"].as_array().expect("a list") {
+            let (own, target) = (&primitive["attributes"], &primitive["targets"][0]);
+            assert_eq!(primitive["targets"].as_array().map(Vec::len), Some(1));
+            let names = |of: &serde_json::Value| {
+                of.as_object().expect("an object").keys().cloned().collect::<Vec<_>>()
+            };
+            assert_eq!(names(target), ["COLOR_0", "NORMAL", "POSITION", "TANGENT", "TEXCOORD_0"]);
+            for name in names(target) {
+                let (own, steps) = (rows(&parts, &own[&name]), rows(&parts, &target[&name]));
+                assert_eq!(
+                    (own.len(), steps[0].len()),
+                    (steps.len(), if name == "TANGENT" { 3 } else { own[0].len() })
+                );
+                if name == "POSITION" {
+                    for (own, step) in own.iter().zip(&steps) {
+                        let end = Vec3::from_slice(own) + Vec3::from_slice(step);
+                        let off = coarser.iter().map(|p| (*p - end).abs().max_element()).fold(1.0, f32::min);
+                        // The last place of a number below 2.
+                        assert!(off <= 2.0 * f32::EPSILON, "{off}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Who does not know geomorphs reads the same levels as without.
+#[test]
+fn files_with_morph_targets_are_read_as_chains() {
+    let mut mesh = textured_torus(32, 16);
+    mesh.name = "torus".into();
+    let chain = bake(&plan(Method::Quadric, halves()), &mesh);
+    let morphs = chain.geomorphs().expect("all levels are there");
+    let [with, without] = [&morphs[..], &[]].map(|morphs| glb(&levels(&chain, morphs)).expect("written"));
+    let read = |file: &[u8]| -> Vec<Mesh> {
+        let files = gltf::read_meshes(file, "torus.glb", None).unwrap_or_else(|e| panic!("{e}"));
+        files.into_iter().map(|file| file.mesh).collect()
+    };
+    assert_eq!(read(&with), read(&without));
+    for file in [&with, &without] {
+        let scene =
+            Scene::open(file, "torus.glb", None, &Options::default()).unwrap_or_else(|e| panic!("{e}"));
+        let [authored] = scene.authored() else { panic!("one chain, not {}", scene.authored().len()) };
+        assert_eq!((authored.levels.len(), scene.parts().len()), (chain.levels.len(), 0));
+        assert_eq!(scene.left(), []);
+    }
+}
+
+#[cfg(feature = "files")]
+#[test]
+fn tables_of_files_with_morph_targets_differ_in_bytes_alone() {
+    use lod_budget::files;
+    let chain = bake(&plan(Method::Quadric, halves()), &textured_torus(32, 16));
+    let morphs = chain.geomorphs().expect("all levels are there");
+    let [with, without] = [&morphs[..], &[]].map(|morphs| {
+        let file = glb(&levels(&chain, morphs)).expect("written");
+        files::Scene::from_gltf(&file, "torus.glb").unwrap_or_else(|e| panic!("{e}")).tables.remove(0)
+    });
+    assert_eq!(with.bounds(), without.bounds());
+    for (i, (a, b)) in with.levels().iter().zip(without.levels()).enumerate() {
+        assert_eq!(a.bytes > b.bytes, i < morphs.len());
+        let bytes = b.bytes;
+        assert_eq!(LevelRecord { bytes, ..*a }, *b);
+    }
+}
+
+#[test]
+fn a_geomorph_of_another_mesh_is_refused() {
+    let chain = bake(&plan(Method::Quadric, halves()), &torus(12, 8, 0.4).into());
+    let morphs = chain.geomorphs().expect("all levels are there");
+    let level = LevelOut { geomorph: Some(&morphs[1]), ..LevelOut::new(&chain.levels[0].mesh) };
+    let refusal = glb(&[level]).expect_err("another mesh").to_string();
+    assert_eq!(refusal, "_LOD0: its geomorph must be one of this mesh");
 }
