@@ -30,10 +30,13 @@ const UNSTEADY: [f32; 5] = [1.0, 1.4, 0.6, 1.2, 0.8];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
-    let mesh = match arguments.next() {
+    let mut mesh: Mesh = match arguments.next() {
         Some(file) => read::load(Path::new(&file)).map_err(|e| e.to_string())?.mesh,
         None => shapes::torus_knot(400, 24).into(),
     };
+    if mesh.normals.is_empty() {
+        mesh.normals = smooth_normals(&mesh);
+    }
     let chain = Plan { look: None, ..Plan::default() }.bake(&mesh, &mut quietly)?;
     let table = chain.table(Accuracy::default())?;
     let morphs = chain.geomorphs()?;
@@ -42,6 +45,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::write(&sheet, contact_sheet(&chain, &morphs)?)?;
     println!("{sheet}");
     Ok(())
+}
+
+/// Per wedge, the mean of its position's triangles by area. A mesh should have normals before it is baked: they morph,
+/// while normals that are made of the triangles of each frame turn at once where triangles collapse.
+fn smooth_normals(mesh: &Mesh) -> Vec<Vec3> {
+    let mut sums = vec![Vec3::ZERO; mesh.positions.len()];
+    for corners in mesh.surface().triangles {
+        let [a, b, c] = corners.map(|position| mesh.positions[position as usize]);
+        corners.iter().for_each(|&position| sums[position as usize] += (b - a).cross(c - a));
+    }
+    mesh.wedges.iter().map(|&position| sums[position as usize].normalize_or_zero()).collect()
 }
 
 /// A line per pair of levels.
@@ -144,7 +158,7 @@ fn weights([from, to]: [Level; 2], shares: &[f32]) -> Vec<f32> {
     weights
 }
 
-/// A coarser level that is far enough from a finer one for the eye: the last two that halve six times.
+/// Two levels near the end of the chain, where there is something to see.
 fn contact_sheet(chain: &Chain, morphs: &[Geomorph]) -> Result<String, Box<dyn Error>> {
     let coarser = chain.levels.len().saturating_sub(3).max(1).min(morphs.len());
     let finer = coarser.saturating_sub(1);
