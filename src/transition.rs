@@ -16,7 +16,7 @@ pub enum TransitionKind {
     Hard,
     /// Both levels are drawn, one fading out and one in; costs both.
     CrossFade,
-    /// The finer mesh is drawn and its vertices move; costs the finer one.
+    /// The finer mesh is drawn and its vertices move, as [`Shown::morph`] says; costs the finer one.
     Geomorph,
 }
 
@@ -109,6 +109,39 @@ impl Shown {
     }
 }
 
+/// What to draw while a geomorph is in flight: one mesh, with its vertices on their way to those of a coarser level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Morph {
+    /// The level whose mesh is drawn: the finer of the two. [`Level::NOT_DRAWN`] where nothing is drawn.
+    pub level: Level,
+    /// The coarser level that it looks like at weight 1; `level` itself where there is nothing to move.
+    pub towards: Level,
+    /// How far its vertices are on the way, 0 to 1: the weight of the morph target.
+    pub weight: f32,
+}
+
+impl Shown {
+    /// The mesh to draw, and the weight of its morph, where the transition is a [`TransitionKind::Geomorph`].
+    ///
+    /// Drawn is the finer mesh both ways, so its weight is [`Shown::weight`] when coarsening and 1 − that when refining.
+    /// The levels may be several apart: the morph is of the finer one of them, towards the coarser one of them. When
+    /// the transition ends the mesh changes, and with an exact morph nothing else does. What appears or goes has nothing
+    /// to morph to: it is drawn unmoved while the transition is in flight.
+    ///
+    /// The weight changes by no more than time ÷ [`TransitionOptions::duration_ms`] in a frame, from the first to the
+    /// last. It is not eased, on purpose: of all ways to go from 0 to 1 the straight one has the smallest largest step,
+    /// and so pops least. An abort goes on from where it is. A retarget starts from an end of the morph before, so that
+    /// what is in flight jumps there, by half of the way at most.
+    pub fn morph(&self) -> Morph {
+        let Self { level, from, weight } = *self;
+        let (finer, coarser) = (level.min(from), level.max(from));
+        if finer == coarser || !coarser.is_drawn() {
+            return Morph { level: finer, towards: finer, weight: 0.0 };
+        }
+        Morph { level: finer, towards: coarser, weight: if level == coarser { weight } else { 1.0 - weight } }
+    }
+}
+
 /// Decides what happens to an object whose choice has become `to`: a transition while `reserve_us` lasts, which it
 /// draws from; beyond that a coarsening switches hard and a refinement waits.
 pub fn follow(
@@ -170,6 +203,65 @@ mod tests {
         assert_eq!(late.towards(Level(0)).from, Level(1));
     }
 
+    const MORPH: TransitionOptions = TransitionOptions { kind: TransitionKind::Geomorph, ..FADE };
+
+    /// The weights of a transition's frames at 60 Hz, until it is over.
+    fn weights(mut shown: Shown) -> Vec<f32> {
+        let mut weights = Vec::new();
+        while shown.is_in_flight() {
+            weights.push(shown.morph().weight);
+            shown = shown.advanced(1000.0 / 60.0, &MORPH);
+        }
+        weights
+    }
+
+    #[test]
+    fn the_finer_mesh_is_drawn_both_ways() {
+        for (from, to, ends) in
+            [(1, 2, [0.0, 1.0]), (2, 1, [1.0, 0.0]), (0, 3, [0.0, 1.0]), (3, 0, [1.0, 0.0])]
+        {
+            let start = Shown::steady(Level(from)).towards(Level(to));
+            let Morph { level, towards, weight } = start.morph();
+            assert_eq!((level, towards, weight), (Level(from.min(to)), Level(from.max(to)), ends[0]));
+            // Behind the last frame is the new level: that step counts as well.
+            let all: Vec<f32> = weights(start).into_iter().chain([ends[1]]).collect();
+            assert!(all.len() >= 13 && all.windows(2).all(|w| (w[1] - w[0]) * (ends[1] - ends[0]) >= 0.0));
+            let most = all.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f32::max);
+            assert!(most <= 1.0 / 8.0, "{most}");
+        }
+    }
+
+    #[test]
+    fn an_aborted_morph_goes_back_from_where_it_is() {
+        let there = Shown::steady(Level(2)).towards(Level(1)).advanced(50.0, &MORPH);
+        let back = there.towards(Level(2));
+        assert_eq!(there.morph(), back.morph());
+        assert_eq!(back.morph(), Morph { level: Level(1), towards: Level(2), weight: 0.75 });
+        assert!(back.advanced(10.0, &MORPH).morph().weight > 0.75);
+    }
+
+    #[test]
+    fn a_retargeted_morph_starts_from_a_whole_level() {
+        let early = Shown { level: Level(1), from: Level(3), weight: 0.25 };
+        let finer = Morph { level: Level(0), towards: Level(3), weight: 1.0 };
+        assert_eq!(early.towards(Level(0)).morph(), finer, "as level 3 looks");
+        let late = Shown { weight: 0.75, ..early };
+        let coarser = Morph { level: Level(1), towards: Level(4), weight: 0.0 };
+        assert_eq!(late.towards(Level(4)).morph(), coarser, "as level 1 looks");
+    }
+
+    #[test]
+    fn what_appears_or_goes_does_not_morph() {
+        let still = |level| Morph { level, towards: level, weight: 0.0 };
+        let level = Level(2);
+        assert_eq!(Shown::steady(level).morph(), still(level));
+        assert_eq!(Shown::NOTHING.morph(), still(Level::NOT_DRAWN));
+        for weight in [0.0, 0.5] {
+            assert_eq!(Shown { level, from: Level::NOT_DRAWN, weight }.morph(), still(level));
+            assert_eq!(Shown { level: Level::NOT_DRAWN, from: level, weight }.morph(), still(level));
+        }
+    }
+
     #[test]
     fn beyond_the_reserve_refinements_wait_and_coarsenings_switch_hard() {
         let shown = Shown::steady(Level(1));
@@ -184,8 +276,7 @@ mod tests {
 
     #[test]
     fn a_geomorph_costs_the_finer_of_its_levels() {
-        let morph = TransitionOptions { kind: TransitionKind::Geomorph, ..FADE };
-        assert_eq!(morph.outgoing_us(16.0, 8.0), 8.0);
-        assert_eq!(morph.outgoing_us(8.0, 16.0), 0.0);
+        assert_eq!(MORPH.outgoing_us(16.0, 8.0), 8.0);
+        assert_eq!(MORPH.outgoing_us(8.0, 16.0), 0.0);
     }
 }

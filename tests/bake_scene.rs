@@ -129,6 +129,7 @@ fn level_out(i: usize, level: &ChainLevel) -> LevelOut<'_> {
         measured: Some(Measured { error: level.error, hausdorff, rms }),
         coverage: Some(0.5 / (1 << i) as f32),
         accuracy: Some(1.0 - i as f32 / 64.0),
+        geomorph: None,
     }
 }
 

@@ -869,3 +869,31 @@ fn a_baked_table_is_inspected_and_compared() {
     let compared = room.json("compare baked/field/field.glb --path walk.csv --policies static,finest --json");
     assert_eq!(compared["policies"].as_array().map(Vec::len), Some(2));
 }
+
+/// A chain with geomorphs is inspected, compared and baked again like one without.
+#[test]
+fn geomorphs_are_written_told_of_and_read_back() {
+    let room = meadow();
+    let still = room.json("bake field.obj --levels 3 --out still --json");
+    let baked = room.json("bake field.obj --levels 3 --geomorph --json");
+    let levels = baked["meshes"][0]["levels"].as_array().expect("levels");
+    for level in &levels[..2] {
+        let number = |key: &str| level["geomorph"][key].as_f64().expect("a number");
+        assert!(number("max") > number("mean") && number("mean") > 0.0, "{level}");
+        assert_eq!(level["geomorph"]["exact"], true);
+    }
+    assert!(levels[2]["geomorph"].is_null() && still["meshes"][0]["levels"][0]["geomorph"].is_null());
+    assert_eq!(room.json("bake field.obj --levels 3 --geomorph --json")["meshes"][0]["status"], "kept");
+    assert_eq!(room.json("bake field.obj --levels 3 --json")["meshes"][0]["status"], "baked");
+    room.done("bake field.obj --levels 3 --geomorph");
+    let [with, without] = ["baked", "still"].map(|out| {
+        Scene::read(&room.path(&format!("{out}/field/field.glb"))).expect("it can be read").tables.remove(0)
+    });
+    assert_eq!(with.bounds(), without.bounds());
+    room.put("walk.csv", PATH);
+    let compared = room.json("compare baked/field/field.glb --path walk.csv --policies static,finest --json");
+    assert_eq!(compared["policies"].as_array().map(Vec::len), Some(2));
+    let again = room.json("bake baked/field/field.glb --scene --out again --json");
+    assert_eq!(again["scenes"][0]["measured"], 1, "{again}");
+    assert_eq!(again["failed"].as_array().map(Vec::len), Some(0));
+}

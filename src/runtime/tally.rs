@@ -60,7 +60,7 @@ impl Tally {
     pub fn add(&mut self, frame: &Frame<'_>, i: usize, shown: Shown) {
         let (first, second) = match (shown.is_in_flight(), self.kind) {
             (false, _) => (shown.level, None),
-            (true, TransitionKind::Geomorph) => (shown.level.min(shown.from), None),
+            (true, TransitionKind::Geomorph) => (shown.morph().level, None),
             (true, _) => (shown.level, Some(shown.from)),
         };
         let candidate = frame.candidate(i);

@@ -1,6 +1,6 @@
 //! Levels and what is measured of them.
 
-use super::{Appearance, BakeError, Chain};
+use super::{Appearance, BakeError, Chain, Lineage};
 use crate::bake::deviation::{self, Deviation, Ruler};
 use crate::bake::mesh::Mesh;
 
@@ -15,6 +15,8 @@ pub struct ChainLevel {
     pub error: f32,
     /// How it looks beside level 0; `None` for level 0 itself, and where nobody looked.
     pub appearance: Option<Appearance>,
+    /// What became of the positions of a finer level; `None` for level 0, and for levels that somebody else made.
+    pub lineage: Option<Lineage>,
 }
 
 impl ChainLevel {
@@ -65,7 +67,12 @@ impl<'a> Gauge<'a> {
     pub(super) fn measured(&self, mesh: Mesh) -> Result<ChainLevel, BakeError> {
         let deviation = self.ruler.deviation(&mesh.surface(), self.options)?;
         let error = deviation::running_max(&[deviation])[0];
-        Ok(ChainLevel { mesh, deviation, error, appearance: None })
+        Ok(ChainLevel { mesh, deviation, error, appearance: None, lineage: None })
+    }
+
+    /// The same with what became of the positions of level 0.
+    pub(super) fn descended(&self, mesh: Mesh, heirs: Vec<u32>) -> Result<ChainLevel, BakeError> {
+        Ok(ChainLevel { lineage: Some(Lineage::of_finest(heirs)), ..self.measured(mesh)? })
     }
 }
 

@@ -17,6 +17,7 @@
 
 mod appearance;
 mod error;
+mod lineage;
 mod measure;
 mod plan;
 mod preset;
@@ -26,6 +27,7 @@ mod table;
 
 pub use appearance::{Appearance, Look};
 pub use error::BakeError;
+pub use lineage::Lineage;
 pub use measure::ChainLevel;
 pub use plan::{Plan, Progress, quietly};
 pub use preset::Preset;
@@ -33,6 +35,7 @@ pub use stops::{Length, Limits, Stops};
 pub use table::Accuracy;
 
 use super::deviation;
+use super::geomorph::{Geomorph, GeomorphError};
 use super::mesh::Mesh;
 use super::simplify::Target;
 
@@ -54,6 +57,27 @@ impl Chain {
     /// No level; what cannot be measured.
     pub fn of_levels(levels: Vec<Mesh>, measure: &deviation::Options) -> Result<Self, BakeError> {
         measure::chain(levels, measure)
+    }
+
+    /// How a level turns into a coarser one, or into itself. It ends in exactly that level where the chain was baked by
+    /// a method that takes vertices to vertices: all but [`Method::Decimate`], which fills holes anew, and
+    /// [`Method::Cluster`] between two levels that are both coarser than level 0, since its grids do not nest. O(n log n).
+    ///
+    /// # Errors
+    /// Levels that the chain does not have or that are in the wrong order; meshes that somebody has broken since.
+    ///
+    /// [`Method::Decimate`]: crate::bake::simplify::Method::Decimate
+    /// [`Method::Cluster`]: crate::bake::simplify::Method::Cluster
+    pub fn geomorph(&self, finer: usize, coarser: usize) -> Result<Geomorph, GeomorphError> {
+        lineage::geomorph(&self.levels, finer, coarser)
+    }
+
+    /// The geomorph of each level into the next: one fewer than there are levels.
+    ///
+    /// # Errors
+    /// As [`Chain::geomorph`].
+    pub fn geomorphs(&self) -> Result<Vec<Geomorph>, GeomorphError> {
+        (1..self.levels.len()).map(|coarser| self.geomorph(coarser - 1, coarser)).collect()
     }
 }
 

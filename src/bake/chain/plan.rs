@@ -201,8 +201,8 @@ struct Draft<'a> {
 
 impl<'a> Draft<'a> {
     fn new(plan: &'a Plan, diagonal: f64, finest: Mesh, locked: Vec<bool>) -> Self {
-        let finest =
-            ChainLevel { mesh: finest, deviation: Deviation::default(), error: 0.0, appearance: None };
+        let deviation = Deviation::default();
+        let finest = ChainLevel { mesh: finest, deviation, error: 0.0, appearance: None, lineage: None };
         Self { plan, diagonal, locked, levels: vec![finest], left_out: Vec::new() }
     }
 
@@ -226,7 +226,8 @@ impl<'a> Draft<'a> {
         let levels = self.plan.simplify(&self.task(), &targets, progress)?;
         for (i, (&target, level)) in targets.iter().zip(levels).enumerate() {
             tell_measuring(i, targets.len(), progress)?;
-            self.add(target, level.mesh, |mesh| gauge.measured(mesh))?;
+            let Simplified { mesh, heirs, .. } = level;
+            self.add(target, mesh, |mesh| gauge.descended(mesh, heirs))?;
         }
         Ok(())
     }
@@ -261,7 +262,8 @@ impl<'a> Draft<'a> {
                 level => {
                     let look = |look| Appearance::of(&level.mesh, self.finest(), look);
                     let appearance = self.plan.look.as_ref().map(look).transpose()?;
-                    self.levels.push(ChainLevel { appearance, ..level });
+                    let lineage = level.lineage.map(|lineage| lineage.shortest(&self.levels));
+                    self.levels.push(ChainLevel { appearance, lineage, ..level });
                 }
             },
         }

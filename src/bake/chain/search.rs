@@ -8,7 +8,7 @@ use super::measure::Gauge;
 use super::plan::{Plan, Tell, tell_measuring};
 use super::{BakeError, ChainLevel};
 use crate::bake::mesh::Mesh;
-use crate::bake::simplify::{Target, Task};
+use crate::bake::simplify::{Simplified, Target, Task};
 
 /// How often the method is asked. Each time halves, about, what a search leaves open, at the price of a whole chain.
 const ROUNDS: usize = 8;
@@ -42,7 +42,7 @@ pub(super) fn search(
         let levels = plan.simplify(task, &targets, progress)?;
         for (i, (quest, level)) in open.iter_mut().zip(levels).enumerate() {
             tell_measuring(i, targets.len(), progress)?;
-            quest.learn(level.mesh, gauge)?;
+            quest.learn(level, gauge)?;
         }
     }
     Ok(quests.into_iter().map(|quest| Found { limit: quest.limit, level: quest.best }).collect())
@@ -75,9 +75,13 @@ impl Quest {
     }
 
     /// Takes in what the knob led to, and turns it.
-    fn learn(&mut self, mesh: Mesh, gauge: &Gauge<'_>) -> Result<(), BakeError> {
+    fn learn(
+        &mut self,
+        Simplified { mesh, heirs, .. }: Simplified,
+        gauge: &Gauge<'_>,
+    ) -> Result<(), BakeError> {
         let triangles = mesh.triangles.len();
-        let level = if triangles == 0 { None } else { Some(gauge.measured(mesh)?) };
+        let level = if triangles == 0 { None } else { Some(gauge.descended(mesh, heirs)?) };
         let distance = level.as_ref().map_or(f64::INFINITY, |level| level.deviation.hausdorff);
         if distance <= self.limit {
             self.is_exhausted = self.within > 0.0 && self.beyond.is_infinite() && triangles == self.last;

@@ -132,11 +132,18 @@ impl Bvh {
 
     /// The triangle nearest to `point`: `hint` unless another is nearer. The nearer the hint, the quicker the answer.
     pub(super) fn nearest(&self, point: DVec3, hint: u32) -> Nearest {
-        let mut best = Nearest { triangle: hint, distance2: self.distance2(hint, point) };
-        if self.nodes.is_empty() || best.distance2 == 0.0 {
+        let best = Nearest { triangle: hint, distance2: self.distance2(hint, point) };
+        self.nearer(point, best, |_| true)
+    }
+
+    /// `best`, unless a triangle that counts is nearer to `point`: the nearest of those.
+    pub(super) fn nearer(&self, point: DVec3, mut best: Nearest, counts: impl Fn(u32) -> bool) -> Nearest {
+        let root = if self.nodes.is_empty() { LEAF } else { 0 };
+        if best.distance2 == 0.0 {
             return best;
         }
         let mut waiting = [(0_u32, 0.0_f64); STACK];
+        waiting[0].0 = root;
         let mut count = 1;
         while count > 0 {
             count -= 1;
@@ -145,7 +152,10 @@ impl Bvh {
                 continue;
             }
             if child & LEAF != 0 {
-                self.try_leaf(child & !LEAF, point, &mut best);
+                let triangle = child & !LEAF;
+                if counts(triangle) {
+                    self.try_leaf(triangle, point, &mut best);
+                }
                 continue;
             }
             for next in farther_first(&self.nodes[child as usize], point) {

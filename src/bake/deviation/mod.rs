@@ -45,6 +45,7 @@ mod bvh;
 mod exact;
 mod facet;
 mod hausdorff;
+mod nearest;
 mod overlay;
 mod piece;
 mod sampling;
@@ -52,6 +53,7 @@ mod shape;
 pub mod silhouette;
 
 use hausdorff::Extent;
+pub(in crate::bake) use nearest::{Finder, Spot};
 pub use sampling::Spread;
 use shape::Shape;
 

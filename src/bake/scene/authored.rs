@@ -86,8 +86,12 @@ fn chain_of(document: &Document, head: usize) -> Option<Vec<usize>> {
     })
 }
 
-/// Whether morph targets move a mesh.
+/// Whether morph targets move a mesh, other than geomorphs between its levels: those are the chain's own.
 fn morphs(document: &Document, mesh: usize) -> bool {
-    let primitives = document.get("meshes", mesh).get("primitives").and_then(Value::as_array);
-    primitives.into_iter().flatten().any(|primitive| primitive.get("targets").is_some())
+    let mesh = document.get("meshes", mesh);
+    let names = mesh.pointer("/extras/targetNames").and_then(Value::as_array);
+    let is_geomorph = |name: &Value| name.as_str().is_some_and(|name| name.starts_with("geomorph_to_LOD"));
+    let are_geomorphs = names.is_some_and(|names| !names.is_empty() && names.iter().all(is_geomorph));
+    let primitives = mesh.get("primitives").and_then(Value::as_array);
+    !are_geomorphs && primitives.into_iter().flatten().any(|primitive| primitive.get("targets").is_some())
 }

@@ -101,7 +101,7 @@ fn mesh(blob: &mut Blob, templates: &[Value], level: &LevelOut<'_>, name: &str) 
         let attributes = attribute_names(template);
         let mesh = bare.entry(attributes.clone()).or_insert_with(|| without_others(level.mesh, &attributes));
         let unnamed = Group { name: String::new(), ..group.clone() };
-        new.push(like(template, primitive::add(blob, mesh, &unnamed, None)));
+        new.push(like(template, primitive::add(blob, mesh, &unnamed, None, None)));
     }
     let mut mesh = json!({ "name": name, "primitives": new });
     let extras = extras(level);

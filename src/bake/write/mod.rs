@@ -11,6 +11,7 @@ pub use glb::{Glb, GlbError, glb};
 pub use obj::obj;
 
 use super::Mesh;
+use super::geomorph::Geomorph;
 
 /// A level as it is written.
 #[derive(Clone, Copy, Debug)]
@@ -23,12 +24,14 @@ pub struct LevelOut<'a> {
     pub coverage: Option<f32>,
     /// What share of the object's benefit the level has, from 0 to 1; `None` where nobody worked it out.
     pub accuracy: Option<f32>,
+    /// How it turns into the next coarser level. In a GLB a morph target; other files have no place for it.
+    pub geomorph: Option<&'a Geomorph>,
 }
 
 impl<'a> LevelOut<'a> {
     /// A level of which nothing is known but its mesh.
     pub fn new(mesh: &'a Mesh) -> Self {
-        Self { mesh, measured: None, coverage: None, accuracy: None }
+        Self { mesh, measured: None, coverage: None, accuracy: None, geomorph: None }
     }
 }
 

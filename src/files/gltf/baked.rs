@@ -11,10 +11,12 @@ use crate::table::LevelRecord;
 pub(super) struct Baked {
     error: Option<f64>,
     accuracy: Option<f64>,
+    /// What `extras.lod_geomorph_max` says.
+    geomorph: Option<f64>,
 }
 
 impl Baked {
-    /// What `extras.lod_error` and `extras.lod_accuracy` say.
+    /// What `extras.lod_error`, `extras.lod_accuracy` and `extras.lod_geomorph_max` say.
     pub(super) fn of(mesh: &json::Mesh) -> Result<Self, String> {
         let extras = mesh.extras.as_ref().map(|e| serde_json::from_str::<Value>(e.get()));
         let extras = extras.transpose().map_err(|e| format!("its extras cannot be read: {e}"))?;
@@ -26,7 +28,14 @@ impl Baked {
             None => Ok(None),
         };
         let error = number("lod_error", f64::from(f32::MAX), "a number that is finite and not negative")?;
-        Ok(Self { error, accuracy: number("lod_accuracy", 1.0, "between 0 and 1")? })
+        let geomorph =
+            number("lod_geomorph_max", f64::from(f32::MAX), "a number that is finite and not negative")?;
+        Ok(Self { error, accuracy: number("lod_accuracy", 1.0, "between 0 and 1")?, geomorph })
+    }
+
+    /// Whether its morph target is the way to the next coarser level, which does not lead out of what holds both.
+    pub(super) fn is_geomorph(&self) -> bool {
+        self.geomorph.is_some()
     }
 
     /// Of all parts of a level, each with its transform: the worst of each, unless something is not known of one.
@@ -37,6 +46,7 @@ impl Baked {
         let worst = parts.map(scaled).reduce(|a, b| Self {
             error: both(a.error, b.error, f64::max),
             accuracy: both(a.accuracy, b.accuracy, f64::min),
+            geomorph: None,
         });
         worst.unwrap_or_default()
     }
@@ -53,7 +63,7 @@ impl Baked {
             |all: fn(&Self) -> Option<f64>| !coarser.is_empty() && coarser.iter().all(|c| all(c).is_some());
         let error = self.error.or(known(|c| c.error).then_some(0.0));
         let accuracy = self.accuracy.or(known(|c| c.accuracy).then_some(1.0));
-        Self { error, accuracy }.tell(level);
+        Self { error, accuracy, geomorph: None }.tell(level);
     }
 }
 

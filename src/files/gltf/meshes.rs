@@ -127,7 +127,11 @@ fn measure(document: &Document, mesh: &json::Mesh) -> Result<Measure, String> {
         let within = |rule: String| format!("primitive {i}: {rule}");
         let position = position_of(primitive).map_err(|rule| within(rule.to_owned()))?;
         total.triangles += triangles(document, primitive, position).map_err(within)?;
-        total.bounds = total.bounds.union(reach(document, primitive, position).map_err(within)?);
+        let reach = match total.baked.is_geomorph() {
+            true => position_box(document, position),
+            false => reach(document, primitive, position),
+        };
+        total.bounds = total.bounds.union(reach.map_err(within)?);
         total.draws += 1;
         positions.insert(position);
         accessors.extend(used_accessors(primitive));

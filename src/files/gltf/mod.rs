@@ -12,7 +12,7 @@
 //! table, called after the finest mesh. Per level: triangles by the mode of each primitive (strips and fans count
 //! n − 2, points and lines 0); vertices as the sum of POSITION counts, an accessor counted once per mesh; a draw per
 //! primitive; bytes as the accessors take once unpacked, morph targets with them. The bound holds all levels, and every
-//! morph target at full weight.
+//! morph target at full weight, but for geomorphs between levels (`extras.lod_geomorph_max` of a mesh).
 //!
 //! **Measured levels**: the error of a level, in object units, and its accuracy are what `extras.lod_error` and
 //! `extras.lod_accuracy` of its meshes say, of several the worst. Level 0 is exact (0 and 1) where nothing is said of

@@ -55,7 +55,7 @@ pub(super) fn tangents(vertices: &Vertices<'_>, normals: &[[f32; 3]]) -> Option<
 }
 
 /// A vector of length 1; `None` for one that has no direction.
-fn unit(v: Vec3) -> Option<Vec3> {
+pub(super) fn unit(v: Vec3) -> Option<Vec3> {
     let length = v.length();
     if (length - 1.0).abs() <= UNIT_TOLERANCE {
         Some(v)

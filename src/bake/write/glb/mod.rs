@@ -6,6 +6,12 @@
 //! from which on each level is shown is in `extras.MSFT_screencoverage` of the first node; what was measured is in the
 //! `extras` of a level's mesh: `lod_error`, `lod_hausdorff` and `lod_rms`, in object units, and `lod_accuracy`.
 //!
+//! A level's [geomorph](super::LevelOut::geomorph) is a morph target of weight 0, called `geomorph_to_LOD1` and so on in
+//! the mesh's `extras.targetNames`: what to add to positions, normals, tangents, texture coordinates and colours to
+//! make it look like that level. How far it moves a vertex at most, and on average, is in `extras.lod_geomorph_max` and
+//! `extras.lod_geomorph_mean`, in object units. Positions meet those of the coarser level to the bit wherever single
+//! precision has a difference that leads there, else to the last place.
+//!
 //! Groups of triangles become primitives, each with vertices of its own, a wedge a vertex, and indices of 16 bits where
 //! they will do. A primitive's `extras.name` is its group's name. Materials are names: matt, white, without textures.
 //! Joints and weights are written without a skin, as the specification allows: the mesh rests in its pose until an
@@ -40,6 +46,7 @@
 
 mod attributes;
 pub(in crate::bake) mod blob;
+mod morph;
 mod node;
 pub(in crate::bake) mod primitive;
 
@@ -126,33 +133,40 @@ impl Glb {
     ///
     /// # Errors
     /// No level; a mesh that does not [check](Mesh::check) or has positions that are infinite or no numbers; coverages
-    /// that only some levels have, rise, are negative or no numbers; more than 4 GiB in all.
+    /// that only some levels have, rise, are negative or no numbers; a geomorph of another mesh; more than 4 GiB in
+    /// all.
     pub fn add_chain(&mut self, name: &str, levels: &[LevelOut<'_>]) -> Result<ChainId, GlbError> {
         if levels.is_empty() {
             return Err(GlbError::new(name, "it must have a level"));
         }
         let coverage = coverages(levels).map_err(|rule| GlbError::new(name, rule))?;
-        let mesh = |(i, level)| self.add_mesh(&format!("{name}_LOD{i}"), level);
+        let mesh = |(i, level)| self.add_mesh(&format!("{name}_LOD{i}"), level, i + 1);
         let meshes = levels.iter().enumerate().map(mesh).collect::<Result<_, _>>()?;
         self.chains.push(Chain { meshes, coverage });
         Ok(ChainId(self.chains.len() - 1))
     }
 
-    /// The index of the level's mesh; `None` where it draws nothing.
-    fn add_mesh(&mut self, name: &str, level: &LevelOut<'_>) -> Result<Option<usize>, GlbError> {
+    /// The index of the level's mesh; `None` where it draws nothing. `next` is the number of the next coarser level.
+    fn add_mesh(&mut self, name: &str, level: &LevelOut<'_>, next: usize) -> Result<Option<usize>, GlbError> {
         let refused = |rule| GlbError::new(name, rule);
         check(level.mesh).map_err(refused)?;
+        level.geomorph.map_or(Ok(()), |geomorph| morph::check(geomorph, level.mesh)).map_err(refused)?;
+        let target = level.geomorph.map(|geomorph| &geomorph.target);
         let mut primitives = Vec::new();
         for group in level.mesh.groups.iter().filter(|group| !group.triangles.is_empty()) {
             let material = group.material.as_ref().map(|name| self.materials.index(name));
-            primitives.push(primitive::add(&mut self.blob, level.mesh, group, material));
+            primitives.push(primitive::add(&mut self.blob, level.mesh, group, material, target));
             self.blob.check().map_err(|rule| refused(rule.to_owned()))?;
         }
         if primitives.is_empty() {
             return Ok(None);
         }
         let mut mesh = object(json!({ "name": name, "primitives": primitives }));
-        let extras = extras(level);
+        let mut extras = extras(level);
+        if let Some(geomorph) = level.geomorph {
+            mesh.insert("weights".to_owned(), json!([0.0]));
+            extras.extend(morph::extras(geomorph, next));
+        }
         mesh.extend((!extras.is_empty()).then(|| ("extras".to_owned(), Value::Object(extras))));
         self.meshes.push(Value::Object(mesh));
         Ok(Some(self.meshes.len() - 1))

@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::attributes;
 use super::blob::Blob;
+use super::morph;
 use crate::bake::mesh::{Group, Mesh};
 use crate::bake::weld::classes;
 
@@ -33,11 +34,23 @@ impl<'a> Vertices<'a> {
     }
 }
 
-/// Writes a group that has triangles.
-pub(in crate::bake) fn add(blob: &mut Blob, mesh: &Mesh, group: &Group, material: Option<usize>) -> Value {
+/// Writes a group that has triangles, with a morph target if there is one: the mesh with other rows.
+pub(in crate::bake) fn add(
+    blob: &mut Blob,
+    mesh: &Mesh,
+    group: &Group,
+    material: Option<usize>,
+    target: Option<&Mesh>,
+) -> Value {
     let vertices = Vertices::of(mesh, group);
     let indices = blob.indices(&vertices.indices, vertices.wedges.len());
-    let mut primitive = json!({ "attributes": attributes(blob, &vertices), "indices": indices });
+    let attributes = attributes(blob, &vertices);
+    let targets: Vec<_> =
+        target.into_iter().map(|target| morph::target(blob, &vertices, target, &attributes)).collect();
+    let mut primitive = json!({ "attributes": attributes, "indices": indices });
+    if !targets.is_empty() {
+        primitive["targets"] = json!(targets);
+    }
     if let Some(material) = material {
         primitive["material"] = json!(material);
     }

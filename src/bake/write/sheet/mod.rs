@@ -61,6 +61,34 @@ pub fn svg(chains: &[Chain<'_>]) -> io::Result<String> {
     Ok(page.finish())
 }
 
+/// What an object looks like at one moment.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a> {
+    /// What it is drawn as.
+    pub mesh: &'a Mesh,
+    /// Written below.
+    pub caption: &'a str,
+    /// Written below that.
+    pub about: &'a str,
+}
+
+/// A sheet of moments, a row for each of these series, called by its name: what a geomorph does, beside a hard switch.
+/// All of a row are seen by the camera of its first, and nearer where the last differs most from it.
+///
+/// # Errors
+/// As [`svg`].
+///
+/// # Panics
+/// As [`svg`].
+pub fn moments_svg(rows: &[(&str, &[Moment<'_>])]) -> io::Result<String> {
+    let mut page = Page::default();
+    for (name, moments) in rows {
+        let levels: Vec<LevelOut<'_>> = moments.iter().map(|moment| LevelOut::new(moment.mesh)).collect();
+        page.add_moments(name, moments, &tiles(&levels)?);
+    }
+    Ok(page.finish())
+}
+
 /// The picture of a mesh by itself, as a PNG of so many pixels each way (made 1 to 4096).
 ///
 /// # Errors

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::TILE_PX;
 use super::image::base64;
+use super::{Moment, TILE_PX};
 use crate::bake::write::{LevelOut, Measured};
 
 /// A level's pictures, as PNG.
@@ -47,12 +47,28 @@ impl Page {
             format!("{} level{plural} · distances in % of the diagonal of {diagonal:.4} units", levels.len());
         self.text([MARGIN, top + 38], "pale", &about);
         self.height = top + TITLE;
-        let columns = columns(levels.len());
+        self.tiles(tiles, |page, at, i| page.caption(at, i, levels, diagonal));
+    }
+
+    /// Adds a series of moments below what was there before.
+    pub(super) fn add_moments(&mut self, name: &str, moments: &[Moment<'_>], tiles: &[Tile]) {
+        let top = self.height + MARGIN;
+        self.text([MARGIN, top + 18], "name", name);
+        self.height = top + TITLE - LINE;
+        self.tiles(tiles, |page, [x, y], i| {
+            page.text([x, y + 4 + LINE], "level", moments[i].caption);
+            page.text([x, y + 4 + 2 * LINE], "", moments[i].about);
+        });
+    }
+
+    /// Adds tiles, each with its caption, which is told where and which it is.
+    fn tiles(&mut self, tiles: &[Tile], caption: impl Fn(&mut Self, [usize; 2], usize)) {
+        let columns = columns(tiles.len());
         for (i, row) in tiles.chunks(columns).enumerate() {
             for (j, tile) in row.iter().enumerate() {
                 let at = [MARGIN + j * (TILE_PX + GAP), self.height];
                 let below = self.tile(at, tile);
-                self.caption([at[0], below], i * columns + j, levels, diagonal);
+                caption(self, [at[0], below], i * columns + j);
             }
             let looks = if row.iter().any(|tile| tile.close.is_some()) { 2 } else { 1 };
             self.height += looks * (TILE_PX + GAP) + CAPTION;

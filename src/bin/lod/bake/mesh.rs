@@ -7,6 +7,7 @@ use anyhow::{Context, anyhow};
 use lod_budget::bake::chain::{BakeError, Chain, Progress};
 use lod_budget::bake::read;
 
+use super::geomorph;
 use super::inputs::{Found, Input};
 use super::outputs::{Folder, Outputs};
 use super::record::{Record, Stamp, input_stamps};
@@ -68,6 +69,7 @@ pub fn timed(
     let chain = bake(&mut progress)?;
     clock.stop();
     let table = chain.table(settings.accuracy)?;
+    let geomorphs = geomorph::all(&chain, settings.geomorph)?;
     let row = MeshRow {
         input: String::new(),
         name: name.to_owned(),
@@ -79,13 +81,13 @@ pub fn timed(
         diagonal: diagonal(&chain),
         unreferenced: chain.unreferenced,
         findings: Vec::new(),
-        levels: LevelRow::all(&chain, &table),
+        levels: LevelRow::all(&chain, &table, &geomorphs),
         left_out: chain.left_out.iter().map(LeftOutRow::of).collect(),
         scene_file: None,
         table_file: None,
         sheet_file: None,
     };
-    Ok((row, Outputs { chain, table }))
+    Ok((row, Outputs { chain, table, geomorphs }))
 }
 
 fn diagonal(chain: &Chain) -> f64 {

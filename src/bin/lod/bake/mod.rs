@@ -1,5 +1,6 @@
 //! `lod bake`: meshes in, levels and LOD tables out.
 
+mod geomorph;
 mod inputs;
 mod mesh;
 mod outputs;
@@ -21,6 +22,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lod_budget::bake::chain::{Accuracy, Length, Preset};
 use lod_budget::bake::simplify::Method;
 
+use geomorph::GeomorphArgs;
 use inputs::{Found, Input};
 use quadric::QuadricArgs;
 use scene::SceneArgs;
@@ -62,6 +64,8 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     chain: ChainArgs,
+    #[command(flatten)]
+    geomorph: GeomorphArgs,
     #[command(flatten)]
     quadric: QuadricArgs,
     #[command(flatten)]

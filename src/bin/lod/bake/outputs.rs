@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, ensure};
 use lod_budget::bake::chain::{Chain, ChainLevel};
+use lod_budget::bake::geomorph::Geomorph;
 use lod_budget::bake::write::{LevelOut, Measured, glb, obj, sheet};
 use lod_budget::files::gltf::coverage_of_size;
 use lod_budget::files::{Scene, write_atomically};
@@ -89,6 +90,8 @@ impl Folder {
 pub struct Outputs {
     pub chain: Chain,
     pub table: LodTable,
+    /// From each level to the next, or none.
+    pub geomorphs: Vec<Geomorph>,
 }
 
 impl Outputs {
@@ -126,12 +129,8 @@ impl Outputs {
     }
 
     pub fn levels(&self) -> Vec<LevelOut<'_>> {
-        self.chain
-            .levels
-            .iter()
-            .zip(self.table.levels())
-            .map(|(level, record)| level_out(level, record))
-            .collect()
+        let levels = self.chain.levels.iter().zip(self.table.levels()).enumerate();
+        levels.map(|(i, (level, record))| level_out(level, record, self.geomorphs.get(i))).collect()
     }
 
     /// A scene of the table alone.
@@ -141,12 +140,17 @@ impl Outputs {
     }
 }
 
-fn level_out<'a>(level: &'a ChainLevel, record: &LevelRecord) -> LevelOut<'a> {
+fn level_out<'a>(
+    level: &'a ChainLevel,
+    record: &LevelRecord,
+    geomorph: Option<&'a Geomorph>,
+) -> LevelOut<'a> {
     let (hausdorff, rms) = (level.deviation.hausdorff, level.deviation.rms());
     LevelOut {
         mesh: &level.mesh,
         measured: Some(Measured { error: level.error, hausdorff, rms }),
         coverage: record.min_size.map(coverage_of_size),
         accuracy: Some(record.accuracy),
+        geomorph,
     }
 }

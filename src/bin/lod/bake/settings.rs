@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use lod_budget::bake::chain::{Accuracy, Limits, Plan, Preset, Stops};
 use lod_budget::bake::scene;
 
+use super::geomorph::GeomorphArgs;
 use super::{Args, ChainArgs, Format};
 
 /// How every mesh is baked.
@@ -12,6 +13,7 @@ pub struct Settings {
     pub plan: Plan,
     pub accuracy: Accuracy,
     pub formats: Vec<Format>,
+    pub geomorph: bool,
     /// What is done to scenes.
     pub scene: scene::Options,
     pub out: PathBuf,
@@ -32,6 +34,7 @@ impl Settings {
             plan,
             accuracy: args.chain.accuracy.accuracy(),
             formats: args.format.clone(),
+            geomorph: args.geomorph.geomorph,
             scene: args.scene.options(),
             out: args.out.clone(),
             force: args.force,
@@ -47,7 +50,8 @@ impl Settings {
     /// All that the outputs depend on beside the mesh; equal keys make equal files.
     pub fn key(&self) -> String {
         let formats = [Format::Glb, Format::Obj, Format::Json, Format::Sheet].map(|f| (f, self.wants(f)));
-        format!("{} {:?} {:?} {formats:?}", env!("CARGO_PKG_VERSION"), self.plan, self.accuracy)
+        let geomorph = GeomorphArgs::key(self.geomorph);
+        format!("{} {:?} {:?} {formats:?}{geomorph}", env!("CARGO_PKG_VERSION"), self.plan, self.accuracy)
     }
 }
 

@@ -2,10 +2,12 @@
 
 use lod_budget::bake::chain::{Appearance, Chain, ChainLevel, LeftOut, Reason};
 use lod_budget::bake::deviation::attributes::Difference;
+use lod_budget::bake::geomorph::Geomorph;
 use lod_budget::bake::scene::Left;
 use lod_budget::table::{LevelRecord, LodTable};
 use serde::{Deserialize, Serialize};
 
+use super::geomorph::GeomorphRow;
 use super::inputs::{Found, Input};
 use super::outputs::Folder;
 
@@ -120,6 +122,9 @@ pub struct LevelRow {
     pub min_size: Option<f32>,
     /// `null` for level 0.
     pub appearance: Option<AppearanceRow>,
+    /// The way to the next coarser level; `null` where nobody asked for it, and for the coarsest.
+    #[serde(default)]
+    pub geomorph: Option<GeomorphRow>,
     /// This level alone.
     pub file: Option<String>,
 }
@@ -202,9 +207,12 @@ impl MeshRow {
 }
 
 impl LevelRow {
-    pub fn all(chain: &Chain, table: &LodTable) -> Vec<Self> {
+    pub fn all(chain: &Chain, table: &LodTable, geomorphs: &[Geomorph]) -> Vec<Self> {
         let levels = chain.levels.iter().zip(table.levels()).enumerate();
-        levels.map(|(i, (level, record))| Self::of(i, level, record)).collect()
+        let geomorph = |i: usize| geomorphs.get(i).map(GeomorphRow::of);
+        levels
+            .map(|(i, (level, record))| Self { geomorph: geomorph(i), ..Self::of(i, level, record) })
+            .collect()
     }
 
     fn of(i: usize, level: &ChainLevel, record: &LevelRecord) -> Self {
@@ -222,6 +230,7 @@ impl LevelRow {
             accuracy: record.accuracy,
             min_size: record.min_size,
             appearance: level.appearance.as_ref().map(AppearanceRow::of),
+            geomorph: None,
             file: None,
         }
     }
