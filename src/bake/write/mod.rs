@@ -11,6 +11,7 @@ pub use glb::{Glb, GlbError, glb};
 pub use obj::obj;
 
 use super::Mesh;
+use super::impostor::Impostor;
 
 /// A level as it is written.
 #[derive(Clone, Copy, Debug)]
@@ -23,12 +24,16 @@ pub struct LevelOut<'a> {
     pub coverage: Option<f32>,
     /// What share of the object's benefit the level has, from 0 to 1; `None` where nobody worked it out.
     pub accuracy: Option<f32>,
+    /// The impostor whose quads the mesh is: a GLB says all of it, with the mesh.
+    pub impostor: Option<&'a Impostor>,
+    /// What a contact sheet shows, where that is not the mesh: [`Impostor::seen`].
+    pub picture: Option<&'a Mesh>,
 }
 
 impl<'a> LevelOut<'a> {
     /// A level of which nothing is known but its mesh.
     pub fn new(mesh: &'a Mesh) -> Self {
-        Self { mesh, measured: None, coverage: None, accuracy: None }
+        Self { mesh, measured: None, coverage: None, accuracy: None, impostor: None, picture: None }
     }
 }
 

@@ -144,9 +144,9 @@ impl Outputs {
 fn level_out<'a>(level: &'a ChainLevel, record: &LevelRecord) -> LevelOut<'a> {
     let (hausdorff, rms) = (level.deviation.hausdorff, level.deviation.rms());
     LevelOut {
-        mesh: &level.mesh,
         measured: Some(Measured { error: level.error, hausdorff, rms }),
         coverage: record.min_size.map(coverage_of_size),
         accuracy: Some(record.accuracy),
+        ..LevelOut::new(&level.mesh)
     }
 }
