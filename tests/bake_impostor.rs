@@ -3,9 +3,14 @@
 #![cfg(feature = "bake")]
 
 use glam::{DVec2, DVec3, Vec3};
-use lod_budget::bake::impostor::{AtlasOptions, Facing, Impostor, ImpostorError, Kind, Options, Sides};
+use lod_budget::bake::chain::{Accuracy, Chain, Plan, quietly};
+use lod_budget::bake::impostor::{
+    AtlasOptions, Facing, Impostor, ImpostorError, Kind, NotJoined, Options, Sides,
+};
+use lod_budget::bake::write::{LevelOut, glb};
 use lod_budget::bake::{Mesh, Surface, shapes};
 use proptest::prelude::*;
+use serde_json::{Value, json};
 
 fn mesh_of(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {
     Mesh { name: "it".into(), ..Surface { positions, triangles }.into() }
@@ -314,4 +319,178 @@ fn options_out_of_range_are_refused_with_the_rule() {
         );
     }
     assert!(good.bake(&knot()).is_ok());
+}
+
+/// A finely cut knot and its levels.
+fn chain() -> Chain {
+    let knot = Mesh { name: "knot".into(), ..shapes::torus_knot(120, 12).into() };
+    let look = None;
+    Plan { look, ..Plan::default() }.bake(&knot, &mut quietly).expect("it can be baked")
+}
+
+#[test]
+fn an_impostor_is_the_last_level_and_never_better_than_the_one_before() {
+    let chain = chain();
+    for accuracy in [Accuracy::Rms, Accuracy::Hausdorff] {
+        let all = chain.table(accuracy).expect("a table");
+        for kind in kinds() {
+            let impostor = baked(kind, &chain.levels[0].mesh);
+            let joined = impostor.join(&chain, accuracy).expect("a table");
+            if let Some(reason) = joined.left_out {
+                assert_eq!((joined.table, joined.kept), (all.clone(), chain.levels.len()));
+                let quads = matches!(kind, Kind::CrossQuads { .. });
+                assert!(reason == NotJoined::TooFar || quads && reason == NotJoined::NotCheaper, "{kind:?}");
+                continue;
+            }
+            let (levels, last) = (joined.table.levels(), joined.kept);
+            assert_eq!(levels.len(), last + 1);
+            assert_eq!(joined.table.lint(), [], "{kind:?}");
+            assert!(levels[last].accuracy < levels[last - 1].accuracy && levels[last].accuracy > 0.0);
+            assert!(all.levels()[last..].iter().all(|level| level.accuracy <= levels[last].accuracy));
+            let error = levels[last].error.map(f64::from);
+            assert!(error >= Some(impostor.error) && levels[last].bytes >= impostor.atlas.bytes);
+            let mesh = impostor.mesh();
+            assert!(mesh.triangles.len() <= levels[last].triangles as usize && mesh.check().is_ok());
+        }
+    }
+}
+
+#[test]
+fn an_impostor_that_is_no_cheaper_is_left_out() {
+    let triangle = mesh_of(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]]);
+    let chain = Chain::of_levels(vec![triangle.clone()], &Default::default()).expect("a chain");
+    let joined = baked(Kind::CrossQuads { planes: 2, horizontal: false }, &triangle)
+        .join(&chain, Accuracy::Rms)
+        .expect("a table");
+    assert_eq!((joined.left_out, joined.kept), (Some(NotJoined::NotCheaper), 1));
+}
+
+#[test]
+fn the_quads_have_the_pixels_of_their_frames() {
+    for kind in kinds() {
+        let impostor = baked(kind, &tree());
+        let mesh = impostor.mesh();
+        let frames: Vec<usize> = match kind {
+            Kind::CrossQuads { .. } => (0..impostor.frames.len()).collect(),
+            _ => vec![impostor.sights(impostor.front)[0].frame],
+        };
+        let corners = frames.iter().flat_map(|&f| impostor.frames[f].outline.iter().map(move |_| f));
+        for (wedge, frame) in corners.enumerate() {
+            let place = mesh.positions[mesh.wedges[wedge] as usize].as_dvec3();
+            let uv = impostor.uv(frame, place);
+            assert!(uv.distance(mesh.uvs[0][wedge].as_dvec2()) < 1e-5);
+            let px = uv * DVec2::new(f64::from(impostor.atlas.width_px), f64::from(impostor.atlas.height_px));
+            let r = impostor.frames[frame].rectangle_px;
+            let inside = |at: f64, from: u32, length: u32| {
+                at > f64::from(from) - 1e-2 && at < f64::from(from + length) + 1e-2
+            };
+            assert!(inside(px.x, r.x, r.width) && inside(px.y, r.y, r.height));
+        }
+    }
+}
+
+#[test]
+fn what_is_seen_is_the_mesh_on_its_quads() {
+    let mesh = tree();
+    for kind in kinds() {
+        let impostor = baked(kind, &mesh);
+        let view = direction(&impostor, 25.0, 20.0);
+        let seen = impostor.seen(&mesh, view);
+        assert_eq!(seen.check(), Ok(()));
+        let copies = if matches!(kind, Kind::CrossQuads { .. }) { impostor.frames.len() } else { 1 };
+        assert_eq!(seen.triangles.len(), copies * mesh.triangles.len());
+        let normal = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|wedge| seen.positions[seen.wedges[wedge as usize] as usize].as_dvec3());
+            (b - a).cross(c - a)
+        };
+        assert!(seen.triangles.iter().all(|t| normal(t).dot(view) > -1e-6), "{kind:?} shows its back");
+    }
+}
+
+#[test]
+fn a_glb_has_the_impostor_as_a_level_with_all_that_is_known_of_it() {
+    let mesh = tree();
+    let impostor = baked(Kind::Octahedral { frames: 5, hemisphere: true }, &mesh);
+    let quads = impostor.mesh();
+    let levels = [LevelOut::new(&mesh), LevelOut { impostor: Some(&impostor), ..LevelOut::new(&quads) }];
+    let glb = glb(&levels).expect("it can be written");
+    let length = u32::from_le_bytes([glb[12], glb[13], glb[14], glb[15]]) as usize;
+    let json: Value = serde_json::from_slice(&glb[20..20 + length]).expect("JSON");
+    assert_eq!(json["meshes"][1]["name"], "it_LOD1");
+    let said = json["meshes"][1]["extras"]["lod_impostor"].to_string();
+    assert_eq!(Impostor::from_json(said.as_bytes(), "it.glb"), Ok(impostor.clone()));
+    assert_eq!(json["materials"][0]["doubleSided"], true);
+    assert_eq!(json["materials"][0]["name"], "it_impostor");
+    let back = Impostor::from_json(impostor.to_json().expect("JSON").as_bytes(), "it.json");
+    assert_eq!(back, Ok(impostor));
+}
+
+#[test]
+fn a_document_that_is_malformed_is_refused_with_file_place_and_rule() {
+    let impostor = baked(Kind::CrossQuads { planes: 2, horizontal: false }, &tree());
+    let good: Value = serde_json::from_str(&impostor.to_json().expect("JSON")).expect("JSON");
+    let refused = |pointer: &str, value: Value| {
+        let mut changed = good.clone();
+        *changed.pointer_mut(pointer).expect("a field") = value;
+        Impostor::from_json(changed.to_string().as_bytes(), "a.json").expect_err(pointer).to_string()
+    };
+    let frame = |i: usize, field: &str| format!("/impostor/frames/{i}/{field}");
+    let cases = [
+        (
+            "/format".to_owned(),
+            json!("lod-budget scene"),
+            "a.json: its \"format\" must be \"lod-budget impostor\"",
+        ),
+        ("/version".to_owned(), json!(2), "a.json: its \"version\" must be 1, not 2"),
+        ("/impostor/radius".to_owned(), json!(-1.0), "a.json: radius: it must be finite and above 0"),
+        (
+            "/impostor/front".to_owned(),
+            json!([0.0, 1.0, 0.0]),
+            "a.json: front: up and front must be of length 1",
+        ),
+        ("/impostor/kind/cross_quads/planes".to_owned(), json!(3), "a.json: frames: there must be as many"),
+        (
+            "/impostor/kind/cross_quads/planes".to_owned(),
+            json!(4_000_000_000_u32),
+            "a.json: kind: cross-quads must",
+        ),
+        ("/impostor/atlas/gutter_px".to_owned(), json!(3), "a.json: atlas: mips must be at most 6"),
+        ("/impostor/validity/nearest".to_owned(), json!(0.0), "a.json: validity: nearest must be finite"),
+        (
+            frame(1, "right"),
+            json!([2.0, 0.0, 0.0]),
+            "a.json: frame 1: right, up and direction must be of length 1",
+        ),
+        (
+            frame(1, "rectangle_px/x"),
+            json!(4_000_000_000_u32),
+            "a.json: frame 1: its rectangle must have pixels",
+        ),
+        (frame(0, "rectangle_px/width"), json!(1), "a.json: frame 0: its window must have the size"),
+        (frame(1, "outline/0"), json!([99.0, 0.0]), "a.json: frame 1: its outline must be in its window"),
+        (frame(1, "depth"), json!([1.0, -1.0]), "a.json: frame 1: depths must be finite and rise"),
+    ];
+    for (pointer, value, message) in cases {
+        let error = refused(&pointer, value);
+        assert!(error.starts_with(message), "{error}");
+    }
+    let other = good.pointer("/impostor/frames/0/rectangle_px").expect("a field").clone();
+    let mut alike = good.clone();
+    let width = |v: &Value| v.pointer("/impostor/frames/0/rectangle_px/width").cloned();
+    alike["impostor"]["frames"][1] = good["impostor"]["frames"][0].clone();
+    assert_eq!(width(&alike), Some(other["width"].clone()));
+    let error =
+        Impostor::from_json(alike.to_string().as_bytes(), "a.json").expect_err("overlaps").to_string();
+    assert_eq!(error, "a.json: frame 1: it must be clear of frame 0 and its gutter");
+    let mut unknown = good.clone();
+    unknown["impostor"]["atlas"]["colour"] = json!(1);
+    let error =
+        Impostor::from_json(unknown.to_string().as_bytes(), "a.json").expect_err("unknown").to_string();
+    assert!(
+        error.starts_with("a.json: line 1, column ") && error.contains("unknown field `colour`"),
+        "{error}"
+    );
+    let cut = &impostor.to_json().expect("JSON").into_bytes()[..300];
+    let error = Impostor::from_json(cut, "a.json").expect_err("cut off").to_string();
+    assert!(error.starts_with("a.json: line ") && error.contains("EOF"), "{error}");
 }

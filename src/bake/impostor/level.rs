@@ -21,7 +21,7 @@ pub struct Joined {
 /// Why an impostor is no level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotJoined {
-    /// It has no fewer triangles, vertices and draw calls than the coarsest level that is more accurate.
+    /// It has more triangles, vertices or draw calls than the coarsest level that is more accurate, or as many of all.
     NotCheaper,
     /// It is worth nothing: its accuracy is 0.
     TooFar,
@@ -83,10 +83,10 @@ impl Impostor {
 }
 
 fn not_joined(finer: &[LevelRecord], record: &LevelRecord) -> Option<NotJoined> {
+    let counts = |level: &LevelRecord| [level.triangles, level.vertices, level.draws];
     let no_cheaper = |finer: &LevelRecord| {
-        record.triangles >= finer.triangles
-            && record.vertices >= finer.vertices
-            && record.draws >= finer.draws
+        let pairs = counts(record).into_iter().zip(counts(finer));
+        pairs.clone().any(|(own, other)| own > other) || pairs.clone().all(|(own, other)| own == other)
     };
     if finer.last().is_some_and(no_cheaper) {
         Some(NotJoined::NotCheaper)

@@ -11,10 +11,11 @@ use lod_budget::files::{Scene, write_atomically};
 use lod_budget::table::{LevelRecord, LodTable};
 
 use super::Format;
+use super::impostor::{self, Card};
 use super::inputs::{Found, real};
 use super::record::{Record, Stamp};
 use super::settings::Settings;
-use super::summary::MeshRow;
+use super::summary::{LevelRow, MeshRow};
 
 /// A folder, and what the files in it are called.
 pub struct Folder {
@@ -71,7 +72,8 @@ impl Folder {
     /// Whether a bake may write a file of this name.
     fn is_output(&self, name: &str) -> bool {
         let ending = name.strip_prefix(&self.name).unwrap_or_default();
-        [".glb", ".json", ".svg", ".bake.json"].contains(&ending) || ending.starts_with("_LOD")
+        [".glb", ".json", ".svg", ".impostor.json", ".bake.json"].contains(&ending)
+            || ending.starts_with("_LOD")
     }
 
     /// Removes what a bake before has left and this one has not replaced. A file that stays does no harm.
@@ -89,9 +91,21 @@ impl Folder {
 pub struct Outputs {
     pub chain: Chain,
     pub table: LodTable,
+    /// The last level of the table, where it is an impostor.
+    pub card: Option<Card>,
 }
 
 impl Outputs {
+    /// Adds the impostor that was asked for, and tells the row of it.
+    pub fn end_with_impostor(&mut self, row: &mut MeshRow, settings: &Settings) -> anyhow::Result<()> {
+        let Some(options) = &settings.impostor else { return Ok(()) };
+        let (table, card, impostor) = impostor::end_with(options, &mut self.chain, settings.accuracy)?;
+        row.levels = LevelRow::all(&self.chain, &table);
+        row.levels.extend(card.iter().map(|card| card.level_row(&table)));
+        (self.table, self.card, row.impostor) = (table, card, Some(impostor));
+        Ok(())
+    }
+
     /// Writes what was asked for and tells the row of it.
     pub fn write(
         &self,
@@ -118,6 +132,9 @@ impl Outputs {
         if settings.wants(Format::Json) {
             row.table_file = Some(put(".json", self.table_json()?.as_bytes())?);
         }
+        if let (Some(card), Some(impostor)) = (&self.card, &mut row.impostor) {
+            impostor.file = Some(put(".impostor.json", card.impostor.to_json()?.as_bytes())?);
+        }
         if settings.wants(Format::Sheet) {
             let chain = sheet::Chain { name: &row.name, levels: &levels };
             row.sheet_file = Some(put(".svg", sheet::svg(&[chain])?.as_bytes())?);
@@ -126,12 +143,10 @@ impl Outputs {
     }
 
     pub fn levels(&self) -> Vec<LevelOut<'_>> {
-        self.chain
-            .levels
-            .iter()
-            .zip(self.table.levels())
-            .map(|(level, record)| level_out(level, record))
-            .collect()
+        let levels = self.chain.levels.iter().zip(self.table.levels());
+        let card =
+            self.card.iter().zip(self.table.levels().last()).map(|(card, record)| card.level_out(record));
+        levels.map(|(level, record)| level_out(level, record)).chain(card).collect()
     }
 
     /// A scene of the table alone.

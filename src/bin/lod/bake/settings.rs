@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use lod_budget::bake::chain::{Accuracy, Limits, Plan, Preset, Stops};
-use lod_budget::bake::scene;
+use lod_budget::bake::{impostor, scene};
 
 use super::{Args, ChainArgs, Format};
 
@@ -12,6 +12,8 @@ pub struct Settings {
     pub plan: Plan,
     pub accuracy: Accuracy,
     pub formats: Vec<Format>,
+    /// What chains end with.
+    pub impostor: Option<impostor::Options>,
     /// What is done to scenes.
     pub scene: scene::Options,
     pub out: PathBuf,
@@ -28,10 +30,13 @@ impl Settings {
         let plan = args.chain.plan();
         let plan = Plan { quadric: args.quadric.over(plan.quadric), ..plan };
         plan.check()?;
+        let impostor = args.impostor.options();
+        impostor.as_ref().map_or(Ok(()), impostor::Options::check)?;
         Ok(Self {
             plan,
             accuracy: args.chain.accuracy.accuracy(),
             formats: args.format.clone(),
+            impostor,
             scene: args.scene.options(),
             out: args.out.clone(),
             force: args.force,
@@ -47,7 +52,8 @@ impl Settings {
     /// All that the outputs depend on beside the mesh; equal keys make equal files.
     pub fn key(&self) -> String {
         let formats = [Format::Glb, Format::Obj, Format::Json, Format::Sheet].map(|f| (f, self.wants(f)));
-        format!("{} {:?} {:?} {formats:?}", env!("CARGO_PKG_VERSION"), self.plan, self.accuracy)
+        let Self { plan, accuracy, impostor, .. } = self;
+        format!("{} {plan:?} {accuracy:?} {formats:?} {impostor:?}", env!("CARGO_PKG_VERSION"))
     }
 }
 
