@@ -52,12 +52,12 @@ impl Basis {
     }
 
     /// From coordinates along right, up and front.
-    pub(super) fn of_local(&self, local: DVec3) -> DVec3 {
+    pub(super) fn world(&self, local: DVec3) -> DVec3 {
         self.right * local.x + self.up * local.y + self.front * local.z
     }
 
     /// To coordinates along right, up and front.
-    pub(super) fn to_local(&self, v: DVec3) -> DVec3 {
+    pub(super) fn local(&self, v: DVec3) -> DVec3 {
         DVec3::new(v.dot(self.right), v.dot(self.up), v.dot(self.front))
     }
 }
@@ -115,7 +115,7 @@ impl Kind {
             }
             Self::Octahedral { frames, hemisphere } => {
                 let map = Octahedron::new(frames, hemisphere);
-                let view = |frame| basis.view(basis.of_local(map.direction(frame)).normalize());
+                let view = |frame| basis.view(basis.world(map.direction(frame)).normalize());
                 (0..self.frame_count()).map(view).collect()
             }
         }

@@ -25,7 +25,7 @@ impl Impostor {
             Kind::CrossQuads { .. } => shares(&self.frames, direction),
             Kind::Octahedral { frames, hemisphere } => {
                 let map = Octahedron::new(frames, hemisphere);
-                let three = map.frames(self.basis().to_local(direction));
+                let three = map.frames(self.basis().local(direction));
                 three.into_iter().map(|(frame, weight)| Sight { frame, weight }).collect()
             }
         };
