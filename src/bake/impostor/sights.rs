@@ -10,7 +10,7 @@ use super::{Facing, Frame, Impostor, Kind, Octahedron};
 pub struct Sight {
     /// Its index.
     pub frame: usize,
-    /// How much it counts, > 0; all that is shown adds up to 1. The share in the blend for octahedral impostors; of
+    /// How much it counts, above 1e-9, of a sum of 1. The share in the blend for octahedral impostors; of
     /// cross-quads, all of which are shown, what each covers on the screen.
     pub weight: f64,
 }
@@ -29,7 +29,7 @@ impl Impostor {
                 three.into_iter().map(|(frame, weight)| Sight { frame, weight }).collect()
             }
         };
-        sights.retain(|sight| sight.weight > 0.0);
+        sights.retain(|sight| sight.weight > LEAST_WEIGHT);
         sights.sort_by(|a, b| b.weight.total_cmp(&a.weight).then(a.frame.cmp(&b.frame)));
         sights
     }
@@ -77,6 +77,10 @@ impl Impostor {
         }
     }
 }
+
+/// Rounding alone makes such weights: of frames beyond the edge that a direction is on, as all from below a hemisphere
+/// are.
+const LEAST_WEIGHT: f64 = 1e-9;
 
 /// What each quad covers, of all that they cover together.
 fn shares(frames: &[Frame], direction: DVec3) -> Vec<Sight> {
