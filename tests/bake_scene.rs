@@ -125,11 +125,10 @@ fn levels(chains: &[Chain]) -> Vec<Vec<LevelOut<'_>>> {
 fn level_out(i: usize, level: &ChainLevel) -> LevelOut<'_> {
     let (hausdorff, rms) = (level.deviation.hausdorff, level.deviation.rms());
     LevelOut {
-        mesh: &level.mesh,
         measured: Some(Measured { error: level.error, hausdorff, rms }),
         coverage: Some(0.5 / (1 << i) as f32),
         accuracy: Some(1.0 - i as f32 / 64.0),
-        geomorph: None,
+        ..LevelOut::new(&level.mesh)
     }
 }
 

@@ -7,6 +7,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use lod_budget::bake::impostor::Impostor;
 use lod_budget::files::{CameraPath, Scene};
 use lod_budget::knapsack::{Instance, exact, greedy};
 use lod_budget::sim::generate::{Recipe, scatter};
@@ -652,6 +653,44 @@ fn a_bake_has_every_key_and_every_file_it_names() {
 }
 
 #[test]
+fn a_bake_can_end_with_an_impostor() {
+    let room = meadow();
+    let before = room.json("bake field.obj --levels 3 --json")["meshes"][0].clone();
+    for kind in ["billboard", "cross", "octahedral"] {
+        let command = format!("bake field.obj --levels 3 --impostor {kind} --out {kind} --json");
+        let mesh = room.json(&command)["meshes"][0].clone();
+        let impostor = &mesh["impostor"];
+        assert!(
+            impostor["error"].as_f64() >= impostor["rms"].as_f64() && impostor["fill"].as_f64() > Some(0.0)
+        );
+        let levels = mesh["levels"].as_array().expect("levels");
+        let table = Scene::read(&room.path(mesh["table_file"].as_str().expect("a table"))).expect("a table");
+        let scene = Scene::read(&room.path(mesh["scene_file"].as_str().expect("a scene"))).expect("a scene");
+        let [table, scene] = [&table, &scene].map(|scene| scene.tables[0].levels());
+        assert_eq!((levels.len(), levels.len()), (table.len(), scene.len()));
+        for (table, scene) in table.iter().zip(scene) {
+            assert_eq!((table.accuracy, table.error), (scene.accuracy, scene.error));
+        }
+        if let Some(reason) = impostor["left_out"].as_str() {
+            assert!(!reason.is_empty() && mesh["levels"] != Value::Null && levels.len() == 3);
+            continue;
+        }
+        let kept = 3 - impostor["levels_left_out"].as_u64().expect("a number") as usize;
+        assert_eq!(levels.len(), kept + 1);
+        assert_eq!(levels[0]["triangles"], before["levels"][0]["triangles"]);
+        let text = room.read(impostor["file"].as_str().expect("a layout"));
+        let read = Impostor::from_json(text.as_bytes(), "it").expect("a layout");
+        assert_eq!(impostor["frames"].as_u64(), Some(read.frames.len() as u64));
+        assert!(room.read(levels[kept]["file"].as_str().expect("a file")).contains("\nvt "));
+    }
+    let kept = room.json("bake field.obj --levels 3 --impostor octahedral --out octahedral --json");
+    assert_eq!(kept["meshes"][0]["status"], "kept");
+    assert!(room.path("octahedral/field/field.impostor.json").exists());
+    room.done("bake field.obj --levels 3 --out octahedral");
+    assert!(!room.path("octahedral/field/field.impostor.json").exists(), "it is stale");
+}
+
+#[test]
 fn the_levels_are_those_that_were_asked_for() {
     let room = meadow();
     let bake = |options: &str| {
@@ -698,6 +737,10 @@ fn a_bake_that_makes_no_sense_is_refused_before_anything_is_done() {
     room.refused("bake field.obj --preset castle", &["castle", "vista"]);
     room.refused("bake field.obj --method magic", &["magic", "quadric"]);
     room.refused("bake field.obj --format dae", &["dae", "glb"]);
+    room.refused("bake field.obj --impostor ghost", &["ghost", "octahedral"]);
+    room.refused("bake field.obj --impostor octahedral --impostor-frames 8", &["odd"]);
+    room.refused("bake field.obj --impostor cross --impostor-size 1", &["8 to 4096"]);
+    room.refused("bake field.obj --impostor-atlas 512", &["--impostor"]);
     assert!(!room.path("baked").exists());
 }
 

@@ -14,6 +14,7 @@
 //! | [`deviation`] | how far two surfaces are apart, as a bound that is proved |
 //! | [`chain`] | plans, chains of measured levels, and their LOD tables |
 //! | [`geomorph`] | a finer level that turns into a coarser one without a jump |
+//! | [`impostor`] | pictures on quads as the last level: layout, cameras, error, table |
 //! | [`scene`] | whole glTF scenes: which meshes get levels, and the same scene with them |
 //! | [`mod@write`] | levels as OBJ, as GLB and as pictures |
 
@@ -21,6 +22,7 @@ pub mod chain;
 pub mod deviation;
 pub mod finding;
 pub mod geomorph;
+pub mod impostor;
 pub mod mesh;
 pub mod read;
 pub mod repair;

@@ -23,7 +23,7 @@ mod plan;
 mod preset;
 mod search;
 mod stops;
-mod table;
+pub(in crate::bake) mod table;
 
 pub use appearance::{Appearance, Look};
 pub use error::BakeError;

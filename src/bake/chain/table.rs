@@ -88,11 +88,11 @@ impl Chain {
 }
 
 /// The projected diameter of an object, in heights of the image, at which an error of its is one pixel.
-fn min_size(radius: f32, error: f32) -> f32 {
+pub(in crate::bake) fn min_size(radius: f32, error: f32) -> f32 {
     (2.0 * f64::from(radius) / (f64::from(error) * LINES)).min(LARGEST_SIZE) as f32
 }
 
-fn rounded_up(value: f64) -> f32 {
+pub(in crate::bake) fn rounded_up(value: f64) -> f32 {
     let nearest = value as f32;
     if f64::from(nearest) < value { nearest.next_up() } else { nearest }
 }

@@ -12,6 +12,7 @@ pub use obj::obj;
 
 use super::Mesh;
 use super::geomorph::Geomorph;
+use super::impostor::Impostor;
 
 /// A level as it is written.
 #[derive(Clone, Copy, Debug)]
@@ -26,12 +27,24 @@ pub struct LevelOut<'a> {
     pub accuracy: Option<f32>,
     /// How it turns into the next coarser level. In a GLB a morph target; other files have no place for it.
     pub geomorph: Option<&'a Geomorph>,
+    /// The impostor whose quads the mesh is: a GLB says all of it, with the mesh.
+    pub impostor: Option<&'a Impostor>,
+    /// What a contact sheet shows, where that is not the mesh: [`Impostor::seen`].
+    pub picture: Option<&'a Mesh>,
 }
 
 impl<'a> LevelOut<'a> {
     /// A level of which nothing is known but its mesh.
     pub fn new(mesh: &'a Mesh) -> Self {
-        Self { mesh, measured: None, coverage: None, accuracy: None, geomorph: None }
+        Self {
+            mesh,
+            measured: None,
+            coverage: None,
+            accuracy: None,
+            geomorph: None,
+            impostor: None,
+            picture: None,
+        }
     }
 }
 

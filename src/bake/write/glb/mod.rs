@@ -4,7 +4,9 @@
 //! shows its finest level; its `MSFT_lod` names further nodes, placed alike, that show the coarser ones. Those are no
 //! part of the scene, so that a program that does not know the extension draws the finest level alone. The coverage
 //! from which on each level is shown is in `extras.MSFT_screencoverage` of the first node; what was measured is in the
-//! `extras` of a level's mesh: `lod_error`, `lod_hausdorff` and `lod_rms`, in object units, and `lod_accuracy`.
+//! `extras` of a level's mesh: `lod_error`, `lod_hausdorff` and `lod_rms`, in object units, and `lod_accuracy`. That of
+//! an impostor's quads has `lod_impostor`, which is what [`Impostor::to_json`](crate::bake::impostor::Impostor::to_json)
+//! writes.
 //!
 //! A level's [geomorph](super::LevelOut::geomorph) is a morph target of weight 0, called `geomorph_to_LOD1` and so on in
 //! the mesh's `extras.targetNames`: what to add to positions, normals, tangents, texture coordinates and colours to
@@ -50,7 +52,7 @@ mod morph;
 mod node;
 pub(in crate::bake) mod primitive;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use serde_json::{Map, Value, json};
@@ -117,6 +119,8 @@ pub struct Glb {
 struct Materials {
     names: Vec<String>,
     known: BTreeMap<String, usize>,
+    /// Those that are seen from both sides and through.
+    cards: BTreeSet<usize>,
 }
 
 #[derive(Debug)]
@@ -155,6 +159,7 @@ impl Glb {
         let mut primitives = Vec::new();
         for group in level.mesh.groups.iter().filter(|group| !group.triangles.is_empty()) {
             let material = group.material.as_ref().map(|name| self.materials.index(name));
+            self.materials.cards.extend(material.filter(|_| level.impostor.is_some()));
             primitives.push(primitive::add(&mut self.blob, level.mesh, group, material, target));
             self.blob.check().map_err(|rule| refused(rule.to_owned()))?;
         }
@@ -225,7 +230,7 @@ impl Glb {
     /// More than 4 GiB in all, which is as much as a GLB can have.
     pub fn finish(self) -> Result<Vec<u8>, GlbError> {
         let has_levels = self.chains.iter().any(|chain| chain.meshes.len() > 1);
-        let materials = self.materials.names.iter().map(|name| material(name)).collect();
+        let materials = self.materials.finished();
         let nodes = self.nodes.into_iter().map(Placed::finished).collect();
         let (views, accessors, bytes) = self.blob.into_parts();
         let mut root = object(json!({
@@ -249,6 +254,11 @@ impl Glb {
 }
 
 impl Materials {
+    fn finished(&self) -> Vec<Value> {
+        let material = |(i, name): (usize, &String)| material(name, self.cards.contains(&i));
+        self.names.iter().enumerate().map(material).collect()
+    }
+
     fn index(&mut self, name: &str) -> usize {
         if let Some(&known) = self.known.get(name) {
             return known;
@@ -287,12 +297,18 @@ pub(in crate::bake) fn extras(level: &LevelOut<'_>) -> Map<String, Value> {
         object(json!({ "lod_error": f64::from(error), "lod_hausdorff": hausdorff, "lod_rms": rms }))
     });
     let accuracy = level.accuracy.map(|accuracy| ("lod_accuracy".to_owned(), json!(accuracy)));
-    measured.into_iter().chain(accuracy).collect()
+    let impostor = level.impostor.map(|impostor| ("lod_impostor".to_owned(), impostor.to_value()));
+    measured.into_iter().chain(accuracy).chain(impostor).collect()
 }
 
 /// Matt and white: without a word glTF means bare metal.
-fn material(name: &str) -> Value {
-    json!({ "name": name, "pbrMetallicRoughness": { "metallicFactor": 0 } })
+fn material(name: &str, is_card: bool) -> Value {
+    let mut material = json!({ "name": name, "pbrMetallicRoughness": { "metallicFactor": 0 } });
+    if is_card {
+        material["doubleSided"] = json!(true);
+        material["alphaMode"] = json!("MASK");
+    }
+    material
 }
 
 /// The members of what is known to be an object.

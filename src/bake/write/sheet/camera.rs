@@ -47,6 +47,11 @@ impl Camera {
         Self { right, up: back.cross(right), back, centre: DVec3::ZERO, scale: 1.0, side }
     }
 
+    /// The unit vector towards the viewer.
+    pub(super) fn back(&self) -> DVec3 {
+        self.back
+    }
+
     /// Moves what the triangles cover to the middle. Corners that are infinite or no numbers do not count.
     fn fit(&mut self, mesh: &Mesh) {
         let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);

@@ -19,6 +19,8 @@ mod sky;
 
 use std::io;
 
+use glam::DVec3;
+
 use self::camera::Camera;
 use self::image::Image;
 use self::normals::Normals;
@@ -105,15 +107,24 @@ pub fn png(mesh: &Mesh, side_px: usize) -> io::Result<Vec<u8>> {
 fn tiles(levels: &[LevelOut<'_>]) -> io::Result<Vec<Tile>> {
     let [finest, .., coarsest] = levels else {
         let alone = levels.iter().map(|level| {
-            let camera = Camera::around(level.mesh, TILE_PX * SAMPLES);
-            tile(level.mesh, &camera, None)
+            let camera = Camera::around(shown(level), TILE_PX * SAMPLES);
+            tile(shown(level), &camera, None)
         });
         return alone.collect();
     };
-    let camera = Camera::around(finest.mesh, TILE_PX * SAMPLES);
-    let seen = |level: &LevelOut<'_>| Frame::of(level.mesh, &camera);
+    let camera = Camera::around(shown(finest), TILE_PX * SAMPLES);
+    let seen = |level: &LevelOut<'_>| Frame::of(shown(level), &camera);
     let corner = difference::greatest(&seen(finest), &seen(coarsest), TILE_PX * SAMPLES / ZOOM);
-    levels.iter().map(|level| tile(level.mesh, &camera, Some(corner))).collect()
+    levels.iter().map(|level| tile(shown(level), &camera, Some(corner))).collect()
+}
+
+fn shown<'a>(level: &LevelOut<'a>) -> &'a Mesh {
+    level.picture.unwrap_or(level.mesh)
+}
+
+/// The direction, from the mesh to the viewer, from which a sheet shows it.
+pub fn direction(mesh: &Mesh) -> DVec3 {
+    Camera::around(mesh, TILE_PX).back()
 }
 
 /// A mesh, and again what lies to the right of and below a corner, nearer.

@@ -47,8 +47,9 @@ fn baked(input: &Input, settings: &Settings, tell: &mut Tell<'_>) -> anyhow::Res
     file.mesh.name.clone_from(&input.name);
     let findings = file.findings.iter().map(ToString::to_string).collect();
     let bake = |progress: &mut Asked<'_>| settings.plan.bake(&file.mesh, progress);
-    let baked = timed(&input.name, bake, settings, tell).with_context(of_input)?;
-    Ok((MeshRow { input: of_input(), findings, ..baked.0 }, baked.1))
+    let (mut row, mut outputs) = timed(&input.name, bake, settings, tell).with_context(of_input)?;
+    outputs.end_with_impostor(&mut row, settings).with_context(of_input)?;
+    Ok((MeshRow { input: of_input(), findings, ..row }, outputs))
 }
 
 /// How a bake asks whether to go on.
@@ -83,11 +84,12 @@ pub fn timed(
         findings: Vec::new(),
         levels: LevelRow::all(&chain, &table, &geomorphs),
         left_out: chain.left_out.iter().map(LeftOutRow::of).collect(),
+        impostor: None,
         scene_file: None,
         table_file: None,
         sheet_file: None,
     };
-    Ok((row, Outputs { chain, table, geomorphs }))
+    Ok((row, Outputs { chain, table, geomorphs, card: None }))
 }
 
 fn diagonal(chain: &Chain) -> f64 {

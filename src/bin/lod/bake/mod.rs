@@ -1,6 +1,7 @@
 //! `lod bake`: meshes in, levels and LOD tables out.
 
 mod geomorph;
+mod impostor;
 mod inputs;
 mod mesh;
 mod outputs;
@@ -17,12 +18,14 @@ use std::num::NonZero;
 use std::path::PathBuf;
 use std::thread;
 
+use anyhow::ensure;
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lod_budget::bake::chain::{Accuracy, Length, Preset};
 use lod_budget::bake::simplify::Method;
 
 use geomorph::GeomorphArgs;
+use impostor::ImpostorArgs;
 use inputs::{Found, Input};
 use quadric::QuadricArgs;
 use scene::SceneArgs;
@@ -69,6 +72,8 @@ pub struct Args {
     #[command(flatten)]
     quadric: QuadricArgs,
     #[command(flatten)]
+    impostor: ImpostorArgs,
+    #[command(flatten)]
     scene: SceneArgs,
 }
 
@@ -111,6 +116,7 @@ Writes to DIR/NAME, NAME being that of the file:
   NAME.glb            all levels, with MSFT_lod and MSFT_screencoverage
   NAME_LOD0.obj …     each level by itself
   NAME.json           the LOD table, in a scene without objects
+  NAME.impostor.json  with --impostor: frames, cameras and atlas
   NAME.svg            the levels side by side
   NAME.bake.json      what was baked how, to know next time";
 
@@ -195,6 +201,7 @@ fn bake(
     tell: &mut Tell<'_>,
 ) -> anyhow::Result<Baked> {
     if args.scene.means(&input.file) {
+        ensure!(settings.impostor.is_none(), "{}: --impostor is for single meshes", input.file.display());
         let jobs = if found.inputs.len() == 1 { jobs } else { 1 };
         let (scene, parts) = scene::bake(input, found, settings, jobs, tell)?;
         return Ok(Baked::Scene(scene, parts));

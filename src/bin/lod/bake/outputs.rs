@@ -12,10 +12,11 @@ use lod_budget::files::{Scene, write_atomically};
 use lod_budget::table::{LevelRecord, LodTable};
 
 use super::Format;
+use super::impostor::{self, Card};
 use super::inputs::{Found, real};
 use super::record::{Record, Stamp};
 use super::settings::Settings;
-use super::summary::MeshRow;
+use super::summary::{LevelRow, MeshRow};
 
 /// A folder, and what the files in it are called.
 pub struct Folder {
@@ -72,7 +73,8 @@ impl Folder {
     /// Whether a bake may write a file of this name.
     fn is_output(&self, name: &str) -> bool {
         let ending = name.strip_prefix(&self.name).unwrap_or_default();
-        [".glb", ".json", ".svg", ".bake.json"].contains(&ending) || ending.starts_with("_LOD")
+        [".glb", ".json", ".svg", ".impostor.json", ".bake.json"].contains(&ending)
+            || ending.starts_with("_LOD")
     }
 
     /// Removes what a bake before has left and this one has not replaced. A file that stays does no harm.
@@ -92,9 +94,23 @@ pub struct Outputs {
     pub table: LodTable,
     /// From each level to the next, or none.
     pub geomorphs: Vec<Geomorph>,
+    /// The last level of the table, where it is an impostor.
+    pub card: Option<Card>,
 }
 
 impl Outputs {
+    /// Adds the impostor that was asked for, and tells the row of it.
+    pub fn end_with_impostor(&mut self, row: &mut MeshRow, settings: &Settings) -> anyhow::Result<()> {
+        let Some(options) = &settings.impostor else { return Ok(()) };
+        let (table, card, impostor) = impostor::end_with(options, &mut self.chain, settings.accuracy)?;
+        // The coarsest level of triangles turns into nothing: an impostor is no mesh of its kind.
+        self.geomorphs.truncate(self.chain.levels.len() - 1);
+        row.levels = LevelRow::all(&self.chain, &table, &self.geomorphs);
+        row.levels.extend(card.iter().map(|card| card.level_row(&table)));
+        (self.table, self.card, row.impostor) = (table, card, Some(impostor));
+        Ok(())
+    }
+
     /// Writes what was asked for and tells the row of it.
     pub fn write(
         &self,
@@ -121,6 +137,9 @@ impl Outputs {
         if settings.wants(Format::Json) {
             row.table_file = Some(put(".json", self.table_json()?.as_bytes())?);
         }
+        if let (Some(card), Some(impostor)) = (&self.card, &mut row.impostor) {
+            impostor.file = Some(put(".impostor.json", card.impostor.to_json()?.as_bytes())?);
+        }
         if settings.wants(Format::Sheet) {
             let chain = sheet::Chain { name: &row.name, levels: &levels };
             row.sheet_file = Some(put(".svg", sheet::svg(&[chain])?.as_bytes())?);
@@ -130,7 +149,12 @@ impl Outputs {
 
     pub fn levels(&self) -> Vec<LevelOut<'_>> {
         let levels = self.chain.levels.iter().zip(self.table.levels()).enumerate();
-        levels.map(|(i, (level, record))| level_out(level, record, self.geomorphs.get(i))).collect()
+        let card =
+            self.card.iter().zip(self.table.levels().last()).map(|(card, record)| card.level_out(record));
+        levels
+            .map(|(i, (level, record))| level_out(level, record, self.geomorphs.get(i)))
+            .chain(card)
+            .collect()
     }
 
     /// A scene of the table alone.
@@ -147,10 +171,10 @@ fn level_out<'a>(
 ) -> LevelOut<'a> {
     let (hausdorff, rms) = (level.deviation.hausdorff, level.deviation.rms());
     LevelOut {
-        mesh: &level.mesh,
         measured: Some(Measured { error: level.error, hausdorff, rms }),
         coverage: record.min_size.map(coverage_of_size),
         accuracy: Some(record.accuracy),
         geomorph,
+        ..LevelOut::new(&level.mesh)
     }
 }

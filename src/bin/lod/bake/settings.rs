@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use lod_budget::bake::chain::{Accuracy, Limits, Plan, Preset, Stops};
-use lod_budget::bake::scene;
+use lod_budget::bake::{impostor, scene};
 
 use super::geomorph::GeomorphArgs;
 use super::{Args, ChainArgs, Format};
@@ -14,6 +14,8 @@ pub struct Settings {
     pub accuracy: Accuracy,
     pub formats: Vec<Format>,
     pub geomorph: bool,
+    /// What chains end with.
+    pub impostor: Option<impostor::Options>,
     /// What is done to scenes.
     pub scene: scene::Options,
     pub out: PathBuf,
@@ -30,11 +32,14 @@ impl Settings {
         let plan = args.chain.plan();
         let plan = Plan { quadric: args.quadric.over(plan.quadric), ..plan };
         plan.check()?;
+        let impostor = args.impostor.options();
+        impostor.as_ref().map_or(Ok(()), impostor::Options::check)?;
         Ok(Self {
             plan,
             accuracy: args.chain.accuracy.accuracy(),
             formats: args.format.clone(),
             geomorph: args.geomorph.geomorph,
+            impostor,
             scene: args.scene.options(),
             out: args.out.clone(),
             force: args.force,
@@ -50,8 +55,9 @@ impl Settings {
     /// All that the outputs depend on beside the mesh; equal keys make equal files.
     pub fn key(&self) -> String {
         let formats = [Format::Glb, Format::Obj, Format::Json, Format::Sheet].map(|f| (f, self.wants(f)));
+        let Self { plan, accuracy, impostor, .. } = self;
         let geomorph = GeomorphArgs::key(self.geomorph);
-        format!("{} {:?} {:?} {formats:?}{geomorph}", env!("CARGO_PKG_VERSION"), self.plan, self.accuracy)
+        format!("{} {plan:?} {accuracy:?} {formats:?} {impostor:?}{geomorph}", env!("CARGO_PKG_VERSION"))
     }
 }
 

@@ -8,6 +8,7 @@ use lod_budget::table::{LevelRecord, LodTable};
 use serde::{Deserialize, Serialize};
 
 use super::geomorph::GeomorphRow;
+use super::impostor::ImpostorRow;
 use super::inputs::{Found, Input};
 use super::outputs::Folder;
 
@@ -49,6 +50,8 @@ pub struct MeshRow {
     pub levels: Vec<LevelRow>,
     /// Levels that were asked for and would be of no use.
     pub left_out: Vec<LeftOutRow>,
+    /// `null` where none was asked for.
+    pub impostor: Option<ImpostorRow>,
     /// All levels in one file.
     pub scene_file: Option<String>,
     /// The LOD table.
@@ -198,7 +201,9 @@ impl MeshRow {
     /// Files as they are to be called from the current folder.
     pub fn within(mut self, folder: &Folder) -> Self {
         let levels = self.levels.iter_mut().map(|level| &mut level.file);
-        let files = levels.chain([&mut self.scene_file, &mut self.table_file, &mut self.sheet_file]);
+        let impostor = self.impostor.iter_mut().map(|impostor| &mut impostor.file);
+        let files =
+            levels.chain(impostor).chain([&mut self.scene_file, &mut self.table_file, &mut self.sheet_file]);
         for file in files.flatten() {
             *file = folder.file(file).display().to_string();
         }

@@ -144,6 +144,7 @@ fn odd_notes(mesh: &MeshRow) -> Vec<String> {
     if mesh.findings.len() > FINDINGS {
         notes.push(format!("{name}: {} more", counted(mesh.findings.len() - FINDINGS, "finding")));
     }
+    notes.extend(mesh.impostor.as_ref().map(|impostor| format!("{name}: {}", impostor.note())));
     notes.extend(mesh.left_out.first().map(|first| {
         format!("{name}: {} left out, the first {}", counted(mesh.left_out.len(), "level"), first.reason)
     }));
