@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::{DVec3, DVec4};
 
+use super::limits::limits;
 use super::net::Net;
 use super::{ControlMesh, FOREVER_SHARP, MOST_CORNERS, Scheme, SubdivideError};
 use crate::bake::weld::classes;
@@ -132,7 +133,14 @@ impl Stack {
     /// The control mesh and so many subdivisions.
     pub fn new(mesh: &ControlMesh, scheme: Scheme, levels: usize) -> Result<Self, SubdivideError> {
         let mut stack = Self::of_control(mesh, scheme)?;
-        while stack.levels.len() <= levels {
+        let corners =
+            |level: usize| (mesh.corners.len() as u64).checked_mul(4_u64.checked_pow(level as u32)?);
+        if let Some(level) =
+            (1..=levels).find(|&level| corners(level).is_none_or(|corners| corners > MOST_CORNERS))
+        {
+            return Err(SubdivideError::TooLarge { level });
+        }
+        for _ in 0..levels {
             stack.add()?;
         }
         Ok(stack)
@@ -163,29 +171,16 @@ impl Stack {
         Ok(())
     }
 
-    /// Where the vertices of the finest level end, those of all coarser ones being the first of them. It is subdivided
-    /// further for that while something is semi-sharp or, for Catmull and Clark's masks, no quad.
+    /// Where the vertices of the finest level end, those of all coarser ones being the first of them.
     pub fn limits(&self) -> Limits {
-        let is_mixed = |level: &Level| {
-            let has_polygons = level.net.corners.len() != 4 * level.net.face_count();
-            has_polygons && self.scheme == Scheme::CatmullClark
-        };
-        let mut deeper: Option<Level> = None;
-        loop {
-            let level = deeper.as_ref().unwrap_or(self.finest());
-            let is_ready = level.net.fleeting() == 0.0 && !is_mixed(level);
-            if is_ready
-                || !(level.has_room() && (is_mixed(level) || level.net.face_count() < MOST_FACES_FOR_LIMIT))
-            {
-                return Limits::of(level, self.scheme);
-            }
-            deeper = Some(level.refined(self.scheme));
+        let level = self.finest();
+        let has_polygons = level.net.corners.len() != 4 * level.net.face_count();
+        match has_polygons && self.scheme == Scheme::CatmullClark {
+            true => Limits::of(&level.refined(self.scheme), self.scheme),
+            false => Limits::of(level, self.scheme),
         }
     }
 }
-
-/// Semi-sharp creases are not followed into more faces than twice this (four times, as they are before the last step).
-const MOST_FACES_FOR_LIMIT: usize = 1 << 20;
 
 /// Where vertices end.
 pub(super) struct Limits {
@@ -196,9 +191,9 @@ pub(super) struct Limits {
 
 impl Limits {
     fn of(level: &Level, scheme: Scheme) -> Self {
-        let channel = |channel: &Channel| scheme.limits(&channel.net, &channel.values);
+        let channel = |channel: &Channel| limits(scheme, &channel.net, &channel.values);
         Self {
-            positions: scheme.limits(&level.net, &level.positions),
+            positions: limits(scheme, &level.net, &level.positions),
             channels: level.channels.iter().map(channel).collect(),
         }
     }

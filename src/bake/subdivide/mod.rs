@@ -51,12 +51,15 @@ mod control;
 mod draw;
 mod error;
 mod level;
+mod limits;
 mod load;
 mod loops;
 mod net;
 mod remainder;
 mod scheme;
 mod sharpen;
+#[cfg(test)]
+mod tests;
 mod upward;
 
 use std::fmt;
@@ -72,8 +75,8 @@ use super::mesh::Mesh;
 /// What is as sharp as this, or sharper, is never smooth: ten subdivisions make a million faces of one.
 pub const FOREVER_SHARP: f32 = 10.0;
 
-/// A subdivision with more corners of faces than this is refused: it would take tens of gigabytes.
-pub const MOST_CORNERS: u64 = 1 << 28;
+/// A subdivision with more corners of faces than this is refused: it would take several gigabytes.
+pub const MOST_CORNERS: u64 = 1 << 26;
 
 /// How to subdivide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,8 +124,6 @@ impl FromStr for Scheme {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Placement {
     /// On the limit surface. Take it unless levels are to be subdivided further by somebody else.
-    ///
-    /// Semi-sharp creases that are sharper than there is memory to subdivide count as sharp for as long as that.
     #[default]
     Limit,
     /// Where the subdivision has them; the coarsest level is the control mesh as it is.

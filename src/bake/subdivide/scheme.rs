@@ -47,10 +47,9 @@ impl Scheme {
         values.iter().copied().chain(middles).chain(self.face_points(net, values)).collect()
     }
 
-    /// Where the vertices come to lie in the limit, if nothing is sharp that is not for ever.
-    ///
+    /// Where the vertices come to lie in the limit, if what is sharp is so for ever and no crease ends in a smooth vertex.
     /// Catmull and Clark's needs a net of quads. On a crease it is (1, 4, 1) / 6, as on any uniform cubic B-spline.
-    pub(super) fn limits<T: Value>(self, net: &Net, values: &[T]) -> Vec<T> {
+    pub(super) fn limit_masks<T: Value>(self, net: &Net, values: &[T]) -> Vec<T> {
         let smooth = match self {
             Self::Loop => loops::smooth_limits(net, values),
             Self::CatmullClark => catmull_clark::smooth_limits(net, values),
