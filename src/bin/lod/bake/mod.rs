@@ -7,6 +7,7 @@ mod quadric;
 mod record;
 mod scene;
 mod settings;
+mod subdivide;
 mod summary;
 mod words;
 mod work;
@@ -25,6 +26,7 @@ use inputs::{Found, Input};
 use quadric::QuadricArgs;
 use scene::SceneArgs;
 use settings::Settings;
+use subdivide::SubdivideArgs;
 use summary::{Baked, Summary};
 use work::Tell;
 
@@ -66,6 +68,8 @@ pub struct Args {
     quadric: QuadricArgs,
     #[command(flatten)]
     scene: SceneArgs,
+    #[command(flatten)]
+    subdivide: SubdivideArgs,
 }
 
 /// What the levels shall be like.
@@ -101,6 +105,7 @@ Examples:
   lod bake 'props/*.glb' --preset small-prop --out lods --jobs 4
   lod bake statue.ply --errors 0.1%,0.5%,2% --format glb
   lod bake town.glb                      every mesh of a scene, in baked/town/town.glb
+  lod bake cage.obj --subdivide 3        levels upwards from a control mesh of quads
   lod bake statue.ply --ratios 0.5,0.25,0.12 --json > statue.json
 
 Writes to DIR/NAME, NAME being that of the file:
@@ -190,7 +195,7 @@ fn bake(
     jobs: usize,
     tell: &mut Tell<'_>,
 ) -> anyhow::Result<Baked> {
-    if args.scene.means(&input.file) {
+    if settings.subdivide.is_none() && args.scene.means(&input.file) {
         let jobs = if found.inputs.len() == 1 { jobs } else { 1 };
         let (scene, parts) = scene::bake(input, found, settings, jobs, tell)?;
         return Ok(Baked::Scene(scene, parts));

@@ -5,11 +5,14 @@ use std::path::PathBuf;
 use lod_budget::bake::chain::{Accuracy, Limits, Plan, Preset, Stops};
 use lod_budget::bake::scene;
 
+use super::subdivide::Subdivision;
 use super::{Args, ChainArgs, Format};
 
 /// How every mesh is baked.
 pub struct Settings {
     pub plan: Plan,
+    /// Where levels go upwards.
+    pub subdivide: Option<Subdivision>,
     pub accuracy: Accuracy,
     pub formats: Vec<Format>,
     /// What is done to scenes.
@@ -29,6 +32,7 @@ impl Settings {
         let plan = Plan { quadric: args.quadric.over(plan.quadric), ..plan };
         plan.check()?;
         Ok(Self {
+            subdivide: args.subdivide.over(&plan)?,
             plan,
             accuracy: args.chain.accuracy.accuracy(),
             formats: args.format.clone(),
@@ -47,7 +51,8 @@ impl Settings {
     /// All that the outputs depend on beside the mesh; equal keys make equal files.
     pub fn key(&self) -> String {
         let formats = [Format::Glb, Format::Obj, Format::Json, Format::Sheet].map(|f| (f, self.wants(f)));
-        format!("{} {:?} {:?} {formats:?}", env!("CARGO_PKG_VERSION"), self.plan, self.accuracy)
+        let upward = self.subdivide.as_ref().map(|upward| format!(" {upward:?}")).unwrap_or_default();
+        format!("{} {:?} {:?} {formats:?}{upward}", env!("CARGO_PKG_VERSION"), self.plan, self.accuracy)
     }
 }
 
