@@ -123,7 +123,7 @@ impl ControlMesh {
     }
 
     /// Whether indices point at something, columns have a row per wedge, faces have three corners or more in different
-    /// positions, all numbers are finite, and what is sharp is there.
+    /// positions, all numbers that are used are finite, and what is sharp is there.
     ///
     /// # Errors
     /// [`SubdivideError::Mesh`] with the first rule that is broken and the element that breaks it.
@@ -143,8 +143,6 @@ impl ControlMesh {
         }
         check_indices("wedge", "position", &self.wedges, self.positions.len())?;
         check_indices("corner", "wedge", &self.corners, wedges)?;
-        let is_finite = self.positions.iter().map(|p| p.is_finite());
-        check_all("position", is_finite)?;
         self.uvs
             .iter()
             .try_for_each(|set| check_all("texture coordinate", set.iter().map(|uv| uv.is_finite())))?;
@@ -159,6 +157,9 @@ impl ControlMesh {
             }
             let corners = &self.corners[start as usize..end as usize];
             let mut positions: Vec<u32> = corners.iter().map(|&wedge| self.wedges[wedge as usize]).collect();
+            if let Some(bad) = positions.iter().find(|&&p| !self.positions[p as usize].is_finite()) {
+                return Err(format!("position {bad} of face {face} must be finite"));
+            }
             positions.sort_unstable();
             if let Some(twice) = positions.windows(2).find(|pair| pair[0] == pair[1]) {
                 return Err(format!("face {face} must not use position {} twice", twice[0]));
