@@ -36,7 +36,7 @@ use super::net::{Edge, Net, Rule};
 
 /// The most subdivisions that are made and compared as they are, in front of the tail. Each makes the tail a quarter
 /// where vertices are regular, and half or so where they are not.
-const DEPTH: usize = 5;
+const DEPTH: usize = 3;
 
 /// No level of more faces than this is subdivided for that, unless it is the first: it would take as long as all else.
 const MANY_FACES: usize = 1 << 18;
