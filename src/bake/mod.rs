@@ -10,6 +10,7 @@
 //! | [`finding`] | what readers and repair have to report |
 //! | [`simplify`] | fewer triangles: the methods behind one interface |
 //! | [`mod@split`] | a mesh that is in view near and far at once, in chunks without cracks |
+//! | [`subdivide`] | more triangles: from a control mesh to the smooth surface that is meant |
 //! | [`shapes`] | meshes to try it on |
 //! | [`deviation`] | how far two surfaces are apart, as a bound that is proved |
 //! | [`chain`] | plans, chains of measured levels, and their LOD tables |
@@ -30,6 +31,7 @@ pub mod scene;
 pub mod shapes;
 pub mod simplify;
 pub mod split;
+pub mod subdivide;
 pub mod surface;
 pub mod weld;
 pub mod write;

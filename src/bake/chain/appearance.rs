@@ -35,7 +35,7 @@ pub struct Appearance {
 }
 
 impl Appearance {
-    pub(super) fn of(level: &Mesh, finest: &Mesh, look: &Look) -> Result<Self, BakeError> {
+    pub(in crate::bake) fn of(level: &Mesh, finest: &Mesh, look: &Look) -> Result<Self, BakeError> {
         Ok(Self {
             attributes: attributes::deviation(finest, level, &look.attributes)?,
             silhouette: silhouette::deviation(&finest.surface(), &level.surface(), &look.silhouette)?,

@@ -13,9 +13,10 @@ pub mod off;
 pub mod ply;
 pub mod stl;
 
+mod crease;
 mod polygons;
 mod text;
-mod triangulate;
+pub(super) mod triangulate;
 
 use std::fmt;
 use std::path::Path;

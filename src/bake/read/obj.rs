@@ -14,23 +14,37 @@ use std::borrow::Cow;
 
 use glam::{Vec2, Vec3, Vec4};
 
+use super::crease::{self, Crease};
 use super::polygons::{Corner, NONE, Polygons, colour, name_of};
 use super::text::{Line, Lines, decoded, integer, quoted};
 use super::{MeshError, MeshFile, Refused, stem};
 use crate::bake::finding::Defect;
+use crate::bake::subdivide::ControlFile;
 
 /// Reads OBJ; `file` names it in errors.
 ///
 /// # Errors
 /// A number that is none, a vertex of fewer than three, an index that points at no vertex: with the line.
 pub fn read(bytes: &[u8], file: &str) -> Result<MeshFile, MeshError> {
-    read_polygons(&decoded(bytes))
-        .and_then(|p| p.into_file(stem(file)))
+    parsed(&decoded(bytes), Obj::new())
+        .and_then(|obj| obj.polygons.into_file(stem(file)))
         .map_err(|refused| refused.within(file))
 }
 
-fn read_polygons(text: &[u8]) -> Result<Polygons, Refused> {
-    let mut obj = Obj::new();
+/// Reads the polygons of OBJ as they are, for subdivision; `file` names it in errors. Normals are left behind. Creases
+/// are those of `t crease` and `t corner`, as OpenSubdiv's shapes have them: `t crease 2/1/0 A B SHARPNESS` for an edge,
+/// `t corner 1/1/0 A SHARPNESS` for a vertex, vertices counted from 0.
+///
+/// # Errors
+/// As [`read`]; a crease that is not as it should be.
+pub fn read_control(bytes: &[u8], file: &str) -> Result<ControlFile, MeshError> {
+    let obj = Obj { creases: Some(Vec::new()), ..Obj::new() };
+    parsed(&decoded(bytes), obj)
+        .and_then(|obj| obj.polygons.into_control(stem(file), &obj.creases.unwrap_or_default()))
+        .map_err(|refused| refused.within(file))
+}
+
+fn parsed(text: &[u8], mut obj: Obj) -> Result<Obj, Refused> {
     let mut lines = Lines::of(text);
     while let Some(line) = lines.next() {
         match continued(line, &mut lines) {
@@ -38,7 +52,7 @@ fn read_polygons(text: &[u8]) -> Result<Polygons, Refused> {
             Cow::Owned(joined) => obj.statement(Line { number: line.number, bytes: &joined })?,
         }
     }
-    Ok(obj.polygons)
+    Ok(obj)
 }
 
 /// The line, with those that it goes on in. Comments do not go on.
@@ -64,11 +78,19 @@ struct Obj {
     object: String,
     group: Option<String>,
     material: Option<String>,
+    /// `None` where nobody wants them.
+    creases: Option<Vec<Crease>>,
 }
 
 impl Obj {
     fn new() -> Self {
-        Self { polygons: Polygons::new("line"), object: String::new(), group: None, material: None }
+        Self {
+            polygons: Polygons::new("line"),
+            object: String::new(),
+            group: None,
+            material: None,
+            creases: None,
+        }
     }
 
     fn statement(&mut self, line: Line<'_>) -> Result<(), Refused> {
@@ -82,11 +104,21 @@ impl Obj {
             b"o" => (self.object, self.group) = (name(), None),
             b"g" => self.group = Some(name()),
             b"usemtl" => self.material = Some(name()).filter(|name| !name.is_empty()),
+            b"t" => self.tag(line)?,
             _ => self.pass_over(line, keyword),
         }
         if matches!(keyword, b"o" | b"g" | b"usemtl") {
             let name = self.group.as_deref().unwrap_or(&self.object);
             self.polygons.begin_group(name, self.material.as_deref());
+        }
+        Ok(())
+    }
+
+    fn tag(&mut self, line: Line<'_>) -> Result<(), Refused> {
+        let crease = if self.creases.is_some() { crease::tag(line)? } else { None };
+        match self.creases.as_mut().zip(crease) {
+            Some((creases, crease)) => creases.push(crease),
+            None => self.pass_over(line, b"t"),
         }
         Ok(())
     }

@@ -9,6 +9,8 @@ use crate::bake::finding::{Defect, Findings};
 use crate::bake::mesh::{Group, Mesh};
 use crate::bake::weld::{classes, weld};
 
+mod control;
+
 /// A file's columns as it has them, and its faces.
 pub(super) struct Polygons {
     /// What a face's number counts: "line" or "face".
@@ -102,9 +104,7 @@ impl Polygons {
     }
 
     pub(super) fn into_file(mut self, name: String) -> Result<MeshFile, Refused> {
-        if [self.positions.len(), self.normals.len(), self.uvs.len()].iter().any(|&n| n >= NONE as usize) {
-            return Err(Refused::whole(TOO_LARGE));
-        }
+        self.check_size()?;
         self.check_corners()?;
         let alike = classes(self.corners.iter().map(|c| [c.position, c.uv, c.normal]));
         let wedges: Vec<Corner> = alike.firsts.iter().map(|&c| self.corners[c as usize]).collect();
@@ -114,6 +114,14 @@ impl Polygons {
         self.fill_columns(&wedges, &mut mesh);
         weld(&mut mesh);
         Ok(MeshFile { mesh, origins, findings: self.findings.0 })
+    }
+
+    fn check_size(&self) -> Result<(), Refused> {
+        let columns = [self.positions.len(), self.normals.len(), self.uvs.len()];
+        match columns.iter().any(|&n| n >= NONE as usize) {
+            true => Err(Refused::whole(TOO_LARGE)),
+            false => Ok(()),
+        }
     }
 
     fn place(&self, face: &Face) -> String {

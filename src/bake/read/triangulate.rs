@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3, Vec3};
 ///
 /// A polygon in space is seen along its normal by Newell (Sutherland, Sproull & Schumacker 1974). Polygons that cut
 /// themselves or have no area get as many triangles as others, which then overlap or have no area.
-pub(super) struct Triangulator {
+pub(in crate::bake) struct Triangulator {
     /// How many more tests of a corner against an ear may be made.
     effort: u64,
     ring: Ring,
@@ -27,12 +27,16 @@ impl Default for Triangulator {
 
 /// The polygons of the file are too much work.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct TooConcave;
+pub(in crate::bake) struct TooConcave;
 
 impl Triangulator {
     /// Calls `emit` with the corners of each triangle: n − 2 of them, that run the way the polygon does. Positions may
     /// be infinite or no number.
-    pub(super) fn cut(&mut self, polygon: &[Vec3], mut emit: impl FnMut([u32; 3])) -> Result<(), TooConcave> {
+    pub(in crate::bake) fn cut(
+        &mut self,
+        polygon: &[Vec3],
+        mut emit: impl FnMut([u32; 3]),
+    ) -> Result<(), TooConcave> {
         if polygon.len() > 3 && self.ring.project(polygon) && !self.ring.is_convex() {
             return self.ring.clip(&mut self.effort, emit);
         }

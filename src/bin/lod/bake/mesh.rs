@@ -1,10 +1,11 @@
 //! One mesh, from its file to its outputs.
 
+use std::error::Error;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow};
-use lod_budget::bake::chain::{BakeError, Chain, Progress};
+use lod_budget::bake::chain::{Chain, Progress};
 use lod_budget::bake::read;
 
 use super::geomorph;
@@ -12,6 +13,7 @@ use super::inputs::{Found, Input};
 use super::outputs::{Folder, Outputs};
 use super::record::{Record, Stamp, input_stamps};
 use super::settings::Settings;
+use super::subdivide::{self, Subdivision};
 use super::summary::{LeftOutRow, LevelRow, MeshRow, Status};
 use super::work::Tell;
 
@@ -42,6 +44,9 @@ pub fn bake(
 
 /// The levels, in memory.
 fn baked(input: &Input, settings: &Settings, tell: &mut Tell<'_>) -> anyhow::Result<(MeshRow, Outputs)> {
+    if let Some(subdivision) = &settings.subdivide {
+        return subdivided(input, subdivision, settings, tell);
+    }
     let of_input = || input.file.display().to_string();
     let mut file = read::load(&input.file).map_err(|e| anyhow!("{e}"))?;
     file.mesh.name.clone_from(&input.name);
@@ -52,13 +57,28 @@ fn baked(input: &Input, settings: &Settings, tell: &mut Tell<'_>) -> anyhow::Res
     Ok((MeshRow { input: of_input(), findings, ..row }, outputs))
 }
 
+/// As [`baked`], upwards.
+fn subdivided(
+    input: &Input,
+    subdivision: &Subdivision,
+    settings: &Settings,
+    tell: &mut Tell<'_>,
+) -> anyhow::Result<(MeshRow, Outputs)> {
+    let of_input = || input.file.display().to_string();
+    let file = subdivision.read(input).map_err(|e| anyhow!("{e}"))?;
+    let bake = |progress: &mut Asked<'_>| subdivision.bake(&file, progress);
+    let (row, outputs) = timed(&input.name, bake, settings, tell).with_context(of_input)?;
+    let (method, findings) = (subdivision.method(&file), subdivide::findings(&file.findings));
+    Ok((MeshRow { input: of_input(), method, findings, ..row }, outputs))
+}
+
 /// How a bake asks whether to go on.
 pub type Asked<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 
 /// Has something baked, and tells all there is to tell but where it is from.
-pub fn timed(
+pub fn timed<E: Error + Send + Sync + 'static>(
     name: &str,
-    bake: impl FnOnce(&mut Asked<'_>) -> Result<Chain, BakeError>,
+    bake: impl FnOnce(&mut Asked<'_>) -> Result<Chain, E>,
     settings: &Settings,
     tell: &mut Tell<'_>,
 ) -> anyhow::Result<(MeshRow, Outputs)> {

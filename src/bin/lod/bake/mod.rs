@@ -9,6 +9,7 @@ mod quadric;
 mod record;
 mod scene;
 mod settings;
+mod subdivide;
 mod summary;
 mod words;
 mod work;
@@ -30,6 +31,7 @@ use inputs::{Found, Input};
 use quadric::QuadricArgs;
 use scene::SceneArgs;
 use settings::Settings;
+use subdivide::SubdivideArgs;
 use summary::{Baked, Summary};
 use work::Tell;
 
@@ -75,6 +77,8 @@ pub struct Args {
     impostor: ImpostorArgs,
     #[command(flatten)]
     scene: SceneArgs,
+    #[command(flatten)]
+    subdivide: SubdivideArgs,
 }
 
 /// What the levels shall be like.
@@ -110,6 +114,7 @@ Examples:
   lod bake 'props/*.glb' --preset small-prop --out lods --jobs 4
   lod bake statue.ply --errors 0.1%,0.5%,2% --format glb
   lod bake town.glb                      every mesh of a scene, in baked/town/town.glb
+  lod bake cage.obj --subdivide 3        levels upwards from a control mesh of quads
   lod bake statue.ply --ratios 0.5,0.25,0.12 --json > statue.json
 
 Writes to DIR/NAME, NAME being that of the file:
@@ -200,7 +205,7 @@ fn bake(
     jobs: usize,
     tell: &mut Tell<'_>,
 ) -> anyhow::Result<Baked> {
-    if args.scene.means(&input.file) {
+    if settings.subdivide.is_none() && args.scene.means(&input.file) {
         ensure!(settings.impostor.is_none(), "{}: --impostor is for single meshes", input.file.display());
         let jobs = if found.inputs.len() == 1 { jobs } else { 1 };
         let (scene, parts) = scene::bake(input, found, settings, jobs, tell)?;

@@ -6,11 +6,14 @@ use lod_budget::bake::chain::{Accuracy, Limits, Plan, Preset, Stops};
 use lod_budget::bake::{impostor, scene};
 
 use super::geomorph::GeomorphArgs;
+use super::subdivide::Subdivision;
 use super::{Args, ChainArgs, Format};
 
 /// How every mesh is baked.
 pub struct Settings {
     pub plan: Plan,
+    /// Where levels go upwards.
+    pub subdivide: Option<Subdivision>,
     pub accuracy: Accuracy,
     pub formats: Vec<Format>,
     pub geomorph: bool,
@@ -35,6 +38,7 @@ impl Settings {
         let impostor = args.impostor.options();
         impostor.as_ref().map_or(Ok(()), impostor::Options::check)?;
         Ok(Self {
+            subdivide: args.subdivide.over(&plan)?,
             plan,
             accuracy: args.chain.accuracy.accuracy(),
             formats: args.format.clone(),
@@ -55,9 +59,10 @@ impl Settings {
     /// All that the outputs depend on beside the mesh; equal keys make equal files.
     pub fn key(&self) -> String {
         let formats = [Format::Glb, Format::Obj, Format::Json, Format::Sheet].map(|f| (f, self.wants(f)));
-        let Self { plan, accuracy, impostor, .. } = self;
+        let Self { plan, subdivide, accuracy, impostor, .. } = self;
         let geomorph = GeomorphArgs::key(self.geomorph);
-        format!("{} {plan:?} {accuracy:?} {formats:?} {impostor:?}{geomorph}", env!("CARGO_PKG_VERSION"))
+        let version = env!("CARGO_PKG_VERSION");
+        format!("{version} {plan:?} {subdivide:?} {accuracy:?} {formats:?} {impostor:?}{geomorph}")
     }
 }
 

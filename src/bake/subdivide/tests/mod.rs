@@ -1,0 +1,7 @@
+//! Subdivision against what the papers and the theory of splines say.
+
+mod bounds;
+mod masks;
+mod shapes;
+mod splines;
+mod twin;
