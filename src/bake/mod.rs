@@ -13,12 +13,14 @@
 //! | [`shapes`] | meshes to try it on |
 //! | [`deviation`] | how far two surfaces are apart, as a bound that is proved |
 //! | [`chain`] | plans, chains of measured levels, and their LOD tables |
+//! | [`hierarchy`] | one huge mesh for a cut that follows the camera, and its file |
 //! | [`scene`] | whole glTF scenes: which meshes get levels, and the same scene with them |
 //! | [`mod@write`] | levels as OBJ, as GLB and as pictures |
 
 pub mod chain;
 pub mod deviation;
 pub mod finding;
+pub mod hierarchy;
 pub mod mesh;
 pub mod read;
 pub mod repair;
