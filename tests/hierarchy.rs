@@ -7,12 +7,14 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::{Mat3, Quat, Vec2, Vec3};
-use lod_budget::View;
+use lod_budget::bake::deviation::{Options, deviation};
 use lod_budget::bake::hierarchy;
 use lod_budget::bake::shapes::{icosphere, terrain, torus_knot};
-use lod_budget::bake::simplify::{GarlandHeckbert, quietly};
+use lod_budget::bake::simplify::{Contraction, GarlandHeckbert, quietly};
 use lod_budget::bake::{Mesh, Surface};
 use lod_budget::hierarchy::{Budget, Cut, Hierarchy};
+use lod_budget::{FrameInput, LevelRecord, LodTable, Object, Objects, Predictive, Runtime, RuntimeOptions};
+use lod_budget::{Sphere, View, ViewInput};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -226,4 +228,213 @@ fn a_walk_around_and_through_a_knot_beside_its_twin() {
 #[test]
 fn a_walk_around_and_through_a_sphere() {
     walk(icosphere(10), 1_000, false, false);
+}
+
+/// A terrain that is cut small, and a camera at its edge that looks across.
+fn vista() -> (Cut, View) {
+    let cut = Cut::new(hierarchy_of(terrain(40, 3)));
+    (cut, camera(Vec3::new(0.5, -0.1, 0.25), Vec3::new(0.5, 0.5, 0.0)))
+}
+
+#[test]
+fn a_still_camera_comes_to_rest_and_costs_nothing() {
+    let (mut cut, view) = vista();
+    for changes in [usize::MAX, 10] {
+        for triangles in [50, 400, 1_000, 130, 400] {
+            let budget = Budget { changes, ..Budget::triangles(triangles) };
+            let settled = (0..500).find(|_| cut.update(&[view], &budget).is_settled);
+            assert!(settled.is_some(), "{budget:?}");
+            let report = cut.update(&[view], &budget);
+            assert_eq!((report.splits, report.merges, report.evaluated), (0, 0, 0));
+            assert!(cut.changed().is_empty());
+        }
+    }
+}
+
+/// Whatever the way, what a camera that stays sees is as good as what it would have seen at once.
+#[test]
+fn a_teleport_is_as_good_as_a_start_there() {
+    let (mut cut, view) = vista();
+    let budget = Budget { hysteresis: 0.0, ..Budget::triangles(600) };
+    let fresh = Cut::new(cut.hierarchy().clone()).update(&[view], &budget);
+    cut.update(&[camera(Vec3::new(0.5, 1.2, 0.3), Vec3::new(0.5, 0.0, 0.0))], &budget);
+    let landed = cut.update(&[view], &budget);
+    assert!(landed.splits > 100 && landed.merges > 100, "{landed:?}");
+    assert!(landed.max_error_px < 1.3 * fresh.max_error_px, "{landed:?} {fresh:?}");
+}
+
+#[test]
+fn detail_is_where_the_camera_looks() {
+    let (mut cut, view) = vista();
+    cut.update(&[view], &Budget::triangles(600));
+    let positions = cut.hierarchy().positions();
+    let near = |t: &&[u32; 3]| positions[t[0] as usize].y < 0.3;
+    let in_front = cut.triangles().iter().filter(near).count();
+    assert!(in_front * 2 > cut.triangles().len(), "{in_front}");
+}
+
+#[test]
+fn good_enough_is_not_made_better() {
+    let (mut cut, view) = vista();
+    let whole = cut.hierarchy().triangles();
+    let at = |cut: &mut Cut, enough_px| {
+        cut.update(&[view], &Budget { enough_px, hysteresis: 0.0, ..Budget::triangles(usize::MAX) })
+    };
+    let [coarse, fine, exact] = [20.0, 2.0, 0.0].map(|enough| at(&mut cut, enough));
+    assert!(coarse.triangles < fine.triangles && fine.triangles < exact.triangles);
+    assert!(coarse.max_error_px <= 20.0 && fine.max_error_px <= 2.0);
+    assert_eq!((exact.triangles, exact.max_error_px), (whole, 0.0));
+    let again = at(&mut cut, 20.0);
+    assert!(again.max_error_px <= 20.0 && again.triangles <= coarse.triangles + 20, "{again:?}");
+}
+
+#[test]
+fn no_budget_leaves_the_base_and_a_broken_view_what_is_there() {
+    let (mut cut, view) = vista();
+    cut.update(&[view], &Budget::triangles(300));
+    let before = cut.triangles().to_vec();
+    let broken = View { eye: Vec3::NAN, ..view };
+    let report = cut.update(&[broken], &Budget::triangles(300));
+    assert_eq!((report.broken_views, cut.triangles()), (1, &before[..]));
+    assert!(cut.update(&[], &Budget::triangles(200)).triangles <= 200);
+    let report = cut.update(&[view, broken], &Budget::triangles(0));
+    assert_eq!((report.triangles, report.broken_views), (cut.hierarchy().base_triangles(), 1));
+    assert!(cut.update(&[view], &Budget::triangles(300)).triangles > 250);
+}
+
+#[test]
+fn a_camera_inside_a_sphere_sees_it() {
+    let mut cut = Cut::new(hierarchy_of(icosphere(8)));
+    let report = cut.update(&[camera(Vec3::ZERO, Vec3::X)], &Budget::triangles(200));
+    assert!(report.triangles > 150 && report.max_error_px.is_finite(), "{report:?}");
+}
+
+/// The outline of a sphere gets more than its middle, which is nearer.
+#[test]
+fn outlines_get_more_than_what_is_seen_face_on() {
+    let mut cut = Cut::new(hierarchy_of(icosphere(30)));
+    cut.update(&[camera(Vec3::new(20.0, 0.0, 0.0), Vec3::ZERO)], &Budget::triangles(1_500));
+    let positions = cut.hierarchy().positions();
+    let corners = || cut.triangles().as_flattened().iter().map(|&v| positions[v as usize].x);
+    let outline = corners().filter(|x| x.abs() < 0.2).count() as f32 / 0.4;
+    let middle = corners().filter(|x| *x > 0.6).count() as f32 / 0.4;
+    assert!(outline > 1.5 * middle, "{outline} {middle}");
+}
+
+#[test]
+fn two_views_share_a_cut() {
+    let (mut cut, view) = vista();
+    let other = camera(Vec3::new(0.5, 1.1, 0.25), Vec3::new(0.5, 0.5, 0.0));
+    let budget = Budget { enough_px: 4.0, ..Budget::triangles(usize::MAX) };
+    let alone = cut.update(&[view], &budget).triangles;
+    let both = cut.update(&[view, other], &budget);
+    assert!(both.triangles > alone && both.max_error_px <= 4.0);
+    assert!(cut.update(&[other, view], &budget).max_error_px <= 4.0);
+}
+
+#[test]
+fn small_and_broken_meshes_have_hierarchies() {
+    let view = camera(Vec3::new(3.0, 3.0, 3.0), Vec3::ZERO);
+    let triangle = Surface { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]] };
+    let flat = Surface { positions: vec![Vec3::ONE; 3], triangles: vec![[0, 1, 2], [0, 1, 1]] };
+    for (surface, triangles) in [(Surface::default(), 0), (triangle, 1), (flat, 1)] {
+        let mut cut = Cut::new(hierarchy_of(surface));
+        let report = cut.update(&[view], &Budget::triangles(10));
+        assert_eq!((report.triangles, report.is_settled), (triangles, true));
+    }
+    let mut broken = Mesh::from(icosphere(1));
+    broken.positions[3] = Vec3::INFINITY;
+    let refused = hierarchy::of(&broken, &GarlandHeckbert::default(), &mut quietly);
+    assert!(refused.expect_err("it is broken").to_string().contains("vertex 3"));
+    let contraction = Contraction { kept: 0, gone: 99, position: Vec3::ZERO, error: 0.0 };
+    let refused =
+        hierarchy::build(&icosphere(1).into(), &[contraction]).expect_err("there is no such vertex");
+    assert_eq!(refused.to_string(), "contraction 0: it must be of two vertices that are there");
+}
+
+#[test]
+fn parts_stay_parts() {
+    let mut two = icosphere(4);
+    let (count, triangles) = (two.positions.len() as u32, two.triangles.clone());
+    two.positions.extend(icosphere(4).positions.iter().map(|&p| p + 3.0 * Vec3::X));
+    two.triangles.extend(triangles.iter().map(|t| t.map(|v| v + count)));
+    walk(two, 300, false, true);
+}
+
+/// What an update promises is measured: no point of the mesh or the cut is farther from the other than the largest
+/// error that is active.
+#[test]
+fn errors_are_bounds() {
+    for surface in [terrain(40, 1), torus_knot(60, 10)] {
+        let hierarchy = hierarchy_of(surface.clone());
+        let mut cut = Cut::new(hierarchy.clone());
+        for triangles in [60, 200, 600] {
+            cut.update(&[camera(Vec3::splat(2.0), Vec3::ZERO)], &Budget::triangles(triangles));
+            let maker = |&node: &u32| (node as usize).checked_sub(hierarchy.leaves());
+            let makers = cut.triangles().as_flattened().iter().filter_map(maker);
+            let bound = makers.map(|o| hierarchy.parts().operations[o].error).fold(0.0, f32::max);
+            let shown =
+                Surface { positions: hierarchy.positions().to_vec(), triangles: cut.triangles().to_vec() };
+            let apart = deviation(&surface, &shown, &Options::default()).expect("surfaces");
+            assert!(apart.attained <= f64::from(bound), "{apart:?} {bound}");
+        }
+    }
+}
+
+/// A scene of props and a terrain under one budget: the level that is chosen for the terrain is the budget of its cut.
+#[test]
+fn a_hierarchy_and_props_share_a_budget_with_a_certificate() {
+    let (mut cut, view) = vista();
+    let ground = cut.hierarchy().table("ground", 200).expect("a terrain has an extent");
+    assert!(ground.levels().len() > 100 && ground.lint().is_empty(), "{:?}", ground.lint());
+    assert_eq!(ground.levels()[0].triangles as usize, cut.hierarchy().triangles());
+    let props = vec![LevelRecord::new(3_000, 1_600), LevelRecord::new(500, 300), LevelRecord::new(60, 40)];
+    let prop = LodTable::new("prop", Sphere::new(Vec3::ZERO, 0.02), props).expect("a good table");
+    let mut objects = Objects::new();
+    let [ground_id, prop_id] = [&ground, &prop].map(|t| objects.add_table(t.clone()).expect("few tables"));
+    objects.insert(Object::new(0, ground.bounds(), ground_id)).expect("a new object");
+    for id in 1..60 {
+        let at = Vec3::new((id % 8) as f32 / 8.0, (id / 8) as f32 / 8.0, 0.1);
+        objects.insert(Object::new(id, Sphere::new(at, 0.02), prop_id)).expect("a new object");
+    }
+    let mut runtime =
+        Runtime::new(RuntimeOptions::default(), Box::new(Predictive::default())).expect("options");
+    let mut seen = BTreeSet::new();
+    for budget_us in [500.0, 650.0, 900.0] {
+        for _ in 0..40 {
+            let report = runtime.frame(&mut objects, &FrameInput::new(&[ViewInput::new(view, 0)], budget_us));
+            assert!(report.predicted_us <= budget_us, "{report:?}");
+            assert!(report.select.certificate.is_some_and(|c| c.gap < 0.05), "{report:?}");
+            for change in
+                runtime.changes().iter().filter(|change| change.object.0 == 0 && change.new.is_drawn())
+            {
+                let level = ground.levels()[change.new.index()];
+                seen.insert(level.triangles);
+                assert!(
+                    cut.update(&[view], &Budget::triangles(level.triangles as usize)).triangles
+                        <= level.triangles as usize
+                );
+            }
+        }
+    }
+    assert!(seen.len() > 1, "more time must buy more ground: {seen:?}");
+}
+
+#[test]
+fn an_offer_is_what_the_cut_is_worth_now() {
+    let (mut cut, view) = vista();
+    let table = cut.hierarchy().table("ground", 100).expect("a terrain has an extent");
+    assert_eq!(cut.offer(&table).expect("a table"), table);
+    let report = cut.update(&[view], &Budget::triangles(500));
+    let near = cut.offer(&table).expect("a table");
+    let at = |table: &LodTable| {
+        let level = table.levels().iter().find(|level| level.triangles as usize <= report.triangles);
+        level.expect("the base has fewer").accuracy
+    };
+    let radius_px = (view.lens(Default::default()).area_px2(&table.bounds()) / std::f32::consts::PI).sqrt();
+    assert!((at(&near) - (1.0 - report.max_error_px / radius_px)).abs() < 0.02);
+    assert!(near.lint().is_empty(), "{:?}", near.lint());
+    let (split, merge) = cut.brink_px();
+    assert!(split.zip(merge).is_some_and(|(split, merge)| split > 0.0 && merge > 0.0));
+    assert_eq!(split, Some(report.max_error_px));
 }

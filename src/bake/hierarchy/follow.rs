@@ -5,6 +5,7 @@ use glam::{DVec3, Vec3};
 use super::ball::Ball;
 use super::cones::Spread;
 use super::error::BuildError;
+use super::ground::Ground;
 use super::leaves::{Raw, number};
 use super::overlay::{Change, Drift};
 use super::stars::Stars;
@@ -22,15 +23,18 @@ pub(super) struct Follow {
     stars: Stars,
     positions: Vec<Vec3>,
     is_gone: Vec<bool>,
-    /// Where all triangles face, if that is along an axis.
+    /// Where all triangles face, if that is along an axis; and what they are measured against then.
     upright: Option<DVec3>,
+    ground: Option<Ground>,
     /// Per triangle, the operation that made it what it is by now.
     makers: Vec<u32>,
     /// Per operation, which way it is off, not rounded.
     spreads: Vec<Spread>,
     raw: Raw,
     change: Change,
+    /// The triangles before, and those of them that are there after.
     star: Vec<u32>,
+    staying: Vec<u32>,
     rests_on: Vec<u32>,
 }
 
@@ -42,16 +46,20 @@ impl Follow {
         if let Some(t) = triangles.iter().position(|t| !is_finite(t)) {
             return Err(BuildError::Mesh(format!("triangle {t} must have finite corners")));
         }
+        let stars = Stars::new(mesh.positions.len(), triangles.clone());
+        let upright = Upright::of(&mesh.positions, &triangles).map(|Upright(axis)| axis);
         Ok(Self {
-            upright: Upright::of(&mesh.positions, &triangles).map(|Upright(axis)| axis),
+            ground: upright.map(|axis| Ground::new(axis, &mesh.positions, &stars, &triangles)),
+            upright,
             is_gone: vec![false; mesh.positions.len()],
             makers: vec![MESH; triangles.len()],
             spreads: Vec::new(),
             raw: Raw::new(mesh.positions.clone(), &triangles),
             positions: mesh.positions.clone(),
-            stars: Stars::new(mesh.positions.len(), triangles),
+            stars,
             change: Change::default(),
             star: Vec::new(),
+            staying: Vec::new(),
             rests_on: Vec::new(),
         })
     }
@@ -76,7 +84,7 @@ impl Follow {
         let &Contraction { kept, gone, position, .. } = contraction;
         self.gather(kept, gone);
         self.describe(kept, gone, position);
-        let operation = self.operation();
+        let operation = self.operation([kept, gone]);
         let maker = match operation {
             Some((operation, spread)) => {
                 self.spreads.push(spread);
@@ -115,6 +123,7 @@ impl Follow {
         points.extend([place(kept), place(gone), position.as_dvec3()]);
         before.clear();
         after.clear();
+        self.staying.clear();
         let mut names = vec![kept, gone, u32::MAX];
         for &triangle in &self.star {
             let corners = self.stars.corners(triangle).map(|v| match names.iter().position(|&n| n == v) {
@@ -127,26 +136,36 @@ impl Follow {
             });
             before.push(corners);
             if !(corners.contains(&0) && corners.contains(&1)) {
+                self.staying.push(triangle);
                 after.push(corners.map(|corner| if corner < 2 { 2 } else { corner }));
             }
         }
     }
 
     /// What is known of the change; `None` where it is to be left out.
-    fn operation(&self) -> Option<(Operation, Spread)> {
+    fn operation(&mut self, ends: [u32; 2]) -> Option<(Operation, Spread)> {
         if self.rests_on.last() == Some(&LEFT_OUT) {
             return None;
         }
         let (moved, spread) = self.moved()?;
+        let exact = self.exact(ends);
         let below =
             || self.rests_on.iter().map(|&o| (&self.raw.operations[o as usize], self.spreads[o as usize]));
         let so_far = below().map(|(o, _)| f64::from(o.error)).fold(0.0, f64::max);
         let spread = below().filter(|(o, _)| o.error > 0.0).map(|(_, s)| s).fold(spread, Spread::with);
-        let ball = Ball::around(self.change.points.iter().copied());
-        let sphere = below().map(|(o, _)| Ball::of(&o.sphere)).fold(ball, Ball::with).sphere();
-        let error = rounded_up(so_far + moved);
+        let sphere = Ball::around(self.change.points.iter().copied()).sphere();
+        // Where a border has moved sideways, heights are not all that is off.
+        let exact = if spread == Spread::EVERY { f64::INFINITY } else { exact.max(so_far) };
+        let error = rounded_up((so_far + moved).min(exact));
         let cone = if error > 0.0 { spread.cone() } else { Cone::EVERY };
         Some((Operation { ends: [0; 2], triangles: 0, error, cone, sphere }, spread))
+    }
+
+    /// How far the surface then is from the mesh, where it is known to be along the axis of a height field.
+    fn exact(&mut self, ends: [u32; 2]) -> f64 {
+        let ground = self.ground.as_mut();
+        let off = ground.and_then(|ground| ground.contract(ends, &self.change, &self.star, &self.staying));
+        off.unwrap_or(f64::INFINITY)
     }
 
     /// How far the surface moves, and which way.

@@ -1,8 +1,8 @@
 //! Vertex hierarchies: from a mesh and a record of its simplification to a [`Hierarchy`], and its file.
 //!
-//! [`build`] follows the record and works out how far off each operation is at most (`overlay.rs`), around what, and
-//! which way. A height field (all of whose triangles face one of the axes' directions) is measured along that axis, and
-//! operations that would turn a triangle of it away from there are left out, with all that rest on them.
+//! [`build`] follows the record and works out how far off each operation is at most, around what, and which way. What
+//! operations move the surface by adds up (`overlay.rs`). A height field (all of whose triangles face one of the axes'
+//! directions) is measured along that axis, against the mesh itself (`ground.rs`), and operations that would turn a triangle of it away from there are left out, with all that rest on them.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -27,6 +27,7 @@ mod cones;
 mod error;
 mod file;
 mod follow;
+mod ground;
 mod leaves;
 mod overlay;
 mod stars;

@@ -30,7 +30,8 @@ pub(super) enum Drift {
     Slid,
 }
 
-/// How far a border may move across the axis, as a share of the size of all that changes, and count as staying.
+/// How far a border may move across the axis, as a share of the size of all that changes, and count as staying: what
+/// rounding does to straight ones.
 const STAYS: f64 = 1e-5;
 
 impl Change {
