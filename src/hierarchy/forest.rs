@@ -34,8 +34,8 @@ pub struct Operation {
     pub error: f32,
     /// Which way from it.
     pub cone: Cone,
-    /// Around all that changes. Spheres need not hold those of the operations that this one rests on: at the height of
-    /// the forest these reach so far that a camera would be inside all of them.
+    /// Around all that changes, and around the spheres of its ends: then what is below is never more urgent. It need not
+    /// hold the spheres of all that it rests on, which reach so far that a camera would be inside most of them.
     pub sphere: Sphere,
 }
 

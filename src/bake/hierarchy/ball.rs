@@ -1,4 +1,4 @@
-//! Spheres around points.
+//! Spheres around points and spheres.
 
 use glam::DVec3;
 
@@ -12,6 +12,10 @@ pub(super) struct Ball {
 }
 
 impl Ball {
+    pub(super) fn of(sphere: &Sphere) -> Self {
+        Self { center: sphere.center.as_dvec3(), radius: f64::from(sphere.radius) }
+    }
+
     /// Around points: from the middle of their box.
     pub(super) fn around(points: impl Iterator<Item = DVec3> + Clone) -> Self {
         let (low, high) = points
@@ -19,6 +23,20 @@ impl Ball {
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
         let center = 0.5 * (low + high);
         Self { center, radius: points.map(|p| p.distance(center)).fold(0.0, f64::max) }
+    }
+
+    /// The smallest around both.
+    pub(super) fn with(self, other: Self) -> Self {
+        let apart = self.center.distance(other.center);
+        if apart + other.radius <= self.radius {
+            self
+        } else if apart + self.radius <= other.radius {
+            other
+        } else {
+            let radius = 0.5 * (apart + self.radius + other.radius);
+            let center = self.center.lerp(other.center, (radius - self.radius) / apart);
+            Self { center, radius }
+        }
     }
 
     /// In single precision, none the smaller.
@@ -40,7 +58,10 @@ mod tests {
             points in prop::collection::vec((-9.0..9.0f64, -9.0..9.0f64, -9.0..9.0f64), 1..9),
         ) {
             let points: Vec<DVec3> = points.into_iter().map(DVec3::from).collect();
-            let sphere = Ball::around(points.iter().copied()).sphere();
+            let (some, others) = points.split_at(points.len().div_ceil(2));
+            let others = if others.is_empty() { some } else { others };
+            let around = |points: &[DVec3]| Ball::around(points.iter().copied());
+            let sphere = around(some).with(around(others)).sphere();
             let reach = |p: &DVec3| p.distance(sphere.center.as_dvec3());
             prop_assert!(points.iter().all(|p| reach(p) <= f64::from(sphere.radius)));
         }

@@ -153,7 +153,8 @@ impl Follow {
             || self.rests_on.iter().map(|&o| (&self.raw.operations[o as usize], self.spreads[o as usize]));
         let so_far = below().map(|(o, _)| f64::from(o.error)).fold(0.0, f64::max);
         let spread = below().filter(|(o, _)| o.error > 0.0).map(|(_, s)| s).fold(spread, Spread::with);
-        let sphere = Ball::around(self.change.points.iter().copied()).sphere();
+        let ends = ends.iter().filter_map(|&end| self.raw.maker(end)).map(|end| Ball::of(&end.sphere));
+        let sphere = ends.fold(Ball::around(self.change.points.iter().copied()), Ball::with).sphere();
         // Where a border has moved sideways, heights are not all that is off.
         let exact = if spread == Spread::EVERY { f64::INFINITY } else { exact.max(so_far) };
         let error = rounded_up((so_far + moved).min(exact));

@@ -37,6 +37,12 @@ impl Raw {
         }
     }
 
+    /// The operation that made what a position is by now, unless it is a leaf.
+    pub(super) fn maker(&self, position: u32) -> Option<&Operation> {
+        let made = self.nodes[position as usize].checked_sub(self.leaves)?;
+        self.operations.get(made as usize)
+    }
+
     /// Adds an operation on two positions with the triangles around them, and returns its index.
     pub(super) fn push(
         &mut self,

@@ -54,7 +54,8 @@ pub struct Report {
     pub evaluated: usize,
     /// Triangles now.
     pub triangles: usize,
-    /// No point in view is farther off than this, in px of the first view; 0 without a view.
+    /// What is off farthest in view is off by at most this, in px of the first view, 0 without a view: by its distance
+    /// as [`Lens::unit_px`] has it. Towards the corners of a wide window the projection stretches that further.
     pub max_error_px: f32,
     /// Whether nothing more would change if the camera stood still.
     pub is_settled: bool,
@@ -198,9 +199,13 @@ impl Cut {
             if self.split_all(worst, budget) {
                 continue;
             }
+            // Room is not made by taking away what is to be split.
+            let above = self.hierarchy.parent(self.hierarchy.node(worst));
             match self.mildest() {
-                Some((least, operation)) if least * (1.0 + budget.hysteresis) < error => {
-                    self.merge(operation)
+                Some((least, operation))
+                    if least * (1.0 + budget.hysteresis) < error && Some(operation) != above =>
+                {
+                    self.merge(operation);
                 }
                 _ => break,
             }
