@@ -73,6 +73,7 @@
 //! | [`bounds`] | spheres and boxes |
 //! | [`view`] | cameras, frusta, and all screen-space maths |
 //! | [`table`] | levels: what they cost and how true they are |
+//! | [`hierarchy`] | one huge mesh, and the cut through it that a camera asks for |
 //! | [`scene`] | the hot store of objects, and what each asks of the selection |
 //! | [`frame`] | what passes between the stages |
 //! | [`knapsack`] | the multiple-choice knapsack, which knows no graphics |
@@ -114,6 +115,8 @@ pub mod bounds;
 pub mod view;
 
 pub mod table;
+
+pub mod hierarchy;
 
 pub mod scene;
 

@@ -7,12 +7,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of `src`, in order: each may name those above it and itself.
-const ROOMS: [&str; 19] = [
+const ROOMS: [&str; 20] = [
     "kernel",
     // vocabulary
     "bounds",
     "table",
     "view",
+    "hierarchy",
     "scene",
     "frame",
     // stages

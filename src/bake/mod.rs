@@ -16,6 +16,7 @@
 //! | [`chain`] | plans, chains of measured levels, and their LOD tables |
 //! | [`geomorph`] | a finer level that turns into a coarser one without a jump |
 //! | [`impostor`] | pictures on quads as the last level: layout, cameras, error, table |
+//! | [`hierarchy`] | one huge mesh for a cut that follows the camera, and its file |
 //! | [`scene`] | whole glTF scenes: which meshes get levels, and the same scene with them |
 //! | [`mod@write`] | levels as OBJ, as GLB and as pictures |
 
@@ -23,6 +24,7 @@ pub mod chain;
 pub mod deviation;
 pub mod finding;
 pub mod geomorph;
+pub mod hierarchy;
 pub mod impostor;
 pub mod mesh;
 pub mod read;
