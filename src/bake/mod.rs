@@ -9,6 +9,7 @@
 //! | [`repair`] | what is wrong with a mesh, and what can be put right safely |
 //! | [`finding`] | what readers and repair have to report |
 //! | [`simplify`] | fewer triangles: the methods behind one interface |
+//! | [`progressive`] | a coarse mesh and the splits that lead to the original: any level, as a file that streams |
 //! | [`mod@split`] | a mesh that is in view near and far at once, in chunks without cracks |
 //! | [`shapes`] | meshes to try it on |
 //! | [`deviation`] | how far two surfaces are apart, as a bound that is proved |
@@ -20,6 +21,7 @@ pub mod chain;
 pub mod deviation;
 pub mod finding;
 pub mod mesh;
+pub mod progressive;
 pub mod read;
 pub mod repair;
 pub mod scene;
