@@ -109,19 +109,20 @@ impl Star {
         }
     }
 
-    /// One of the vertices is at the border: it is taken to where both go.
-    fn at_border(&self, vertex: u32, ends: Ends, new: Loose) -> Option<(Vec<[Corner; 3]>, f64)> {
-        if !new.is_between(ends.from.vertex, ends.to.vertex) {
+    /// One of the vertices is at the border, which runs over it from one end to the other, and then over where both go:
+    /// that is a point of the edge before it or of the one after it.
+    fn at_border(&self, vertex: u32, Ends { from, to }: Ends, new: Loose) -> Option<(Vec<[Corner; 3]>, f64)> {
+        if !new.is_between(from.vertex, to.vertex) {
             return None;
         }
-        let from = self.old.as_flattened().iter().find(|corner| corner.vertex == vertex)?.at;
-        let moved =
-            |corner: Corner| if corner.vertex == vertex { Corner { at: self.to, ..corner } } else { corner };
-        Some((self.old.iter().map(|t| t.map(moved)).collect(), from.distance(self.to)))
+        let own = Corner { vertex, at: self.old_place(vertex)? };
+        let after = self.bordered([own, to], [nearest([from.at, self.to], own.at), to.at]);
+        let before = self.bordered([from, own], [from.at, nearest([self.to, to.at], own.at)]);
+        Some(if after.1 <= before.1 { after } else { before })
     }
 
     /// The border runs from `from` over the two vertices, `first` and `second`, to `to`. Both are taken to the nearest
-    /// place of the new border, and a point between them to where both go.
+    /// place of the new border.
     fn along_border(
         &self,
         [first, second]: [u32; 2],
@@ -132,29 +133,42 @@ impl Star {
         if !new.is_between(from.vertex, to.vertex) {
             return None;
         }
-        let at = |v: u32| self.old.as_flattened().iter().find(|corner| corner.vertex == v).map(|c| c.at);
-        let ends = [at(first)?, at(second)?];
-        let places = [nearest([from.at, self.to], ends[0]), nearest([self.to, to.at], ends[1])];
-        let middle = nearest(ends, self.to);
-        let moved =
-            ends[0].distance(places[0]).max(ends[1].distance(places[1])).max(middle.distance(self.to));
+        let corner = |vertex: u32| self.old_place(vertex).map(|at| Corner { vertex, at });
+        let (first, second) = (corner(first)?, corner(second)?);
+        let places = [nearest([from.at, self.to], first.at), nearest([self.to, to.at], second.at)];
+        Some(self.bordered([first, second], places))
+    }
+
+    fn old_place(&self, vertex: u32) -> Option<DVec3> {
+        self.old.as_flattened().iter().find(|corner| corner.vertex == vertex).map(|corner| corner.at)
+    }
+
+    /// The old triangles with the ends of a border edge taken to some places, and the point of it that is nearest to
+    /// where both vertices go taken there; and how far they had to go.
+    fn bordered(&self, edge: [Corner; 2], places: [DVec3; 2]) -> (Vec<[Corner; 3]>, f64) {
+        let middle = nearest(edge.map(|corner| corner.at), self.to);
+        let ends = edge.iter().zip(places).map(|(corner, place)| corner.at.distance(place));
+        let moved = ends.fold(middle.distance(self.to), f64::max);
         let middle = Corner { vertex: MIDDLE, at: self.to };
-        let place = |corner: Corner| match corner.vertex {
-            v if v == first => Corner { at: places[0], ..corner },
-            v if v == second => Corner { at: places[1], ..corner },
-            _ => corner,
+        let place = |corner: Corner| {
+            let end = edge.iter().zip(places).find(|(end, _)| end.vertex == corner.vertex);
+            end.map_or(corner, |(_, at)| Corner { at, ..corner })
         };
         let mut old = Vec::with_capacity(self.old.len() + 1);
         for triangle in self.old.iter().map(|t| t.map(place)) {
-            let start =
-                (0..3).find(|&i| triangle[i].vertex == first && triangle[(i + 1) % 3].vertex == second);
-            match start.map(|i| [triangle[i], triangle[(i + 1) % 3], triangle[(i + 2) % 3]]) {
-                Some([a, b, c]) => old.extend([[a, middle, c], [middle, b, c]]),
+            let next = |i: usize| triangle[(i + 1) % 3];
+            let is_edge =
+                |&i: &usize| triangle[i].vertex == edge[0].vertex && next(i).vertex == edge[1].vertex;
+            match (0..3).find(is_edge) {
+                Some(i) => {
+                    let (a, b, c) = (triangle[i], next(i), next(i + 1));
+                    old.extend([[a, middle, c], [middle, b, c]]);
+                }
                 None => old.push(triangle),
             }
         }
         old.retain(|[a, b, c]| a.at != b.at && b.at != c.at && c.at != a.at);
-        Some((old, moved))
+        (old, moved)
     }
 
     /// Whether new triangles go around their vertex once at most, so that none covers another.

@@ -9,6 +9,7 @@ use lod_budget::bake::read;
 
 use super::inputs::{Found, Input};
 use super::outputs::{Folder, Outputs};
+use super::progressive;
 use super::record::{Record, Stamp, input_stamps};
 use super::settings::Settings;
 use super::summary::{LeftOutRow, LevelRow, MeshRow, Status};
@@ -47,7 +48,9 @@ fn baked(input: &Input, settings: &Settings, tell: &mut Tell<'_>) -> anyhow::Res
     let findings = file.findings.iter().map(ToString::to_string).collect();
     let bake = |progress: &mut Asked<'_>| settings.plan.bake(&file.mesh, progress);
     let baked = timed(&input.name, bake, settings, tell).with_context(of_input)?;
-    Ok((MeshRow { input: of_input(), findings, ..baked.0 }, baked.1))
+    let progressive = settings.progressive.as_ref().map(|options| progressive::file(&file.mesh, options));
+    let outputs = Outputs { progressive: progressive.transpose().with_context(of_input)?, ..baked.1 };
+    Ok((MeshRow { input: of_input(), findings, ..baked.0 }, outputs))
 }
 
 /// How a bake asks whether to go on.
@@ -84,8 +87,9 @@ pub fn timed(
         scene_file: None,
         table_file: None,
         sheet_file: None,
+        progressive_file: None,
     };
-    Ok((row, Outputs { chain, table }))
+    Ok((row, Outputs { chain, table, progressive: None }))
 }
 
 fn diagonal(chain: &Chain) -> f64 {

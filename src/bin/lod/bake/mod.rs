@@ -3,6 +3,7 @@
 mod inputs;
 mod mesh;
 mod outputs;
+mod progressive;
 mod quadric;
 mod record;
 mod scene;
@@ -22,6 +23,7 @@ use lod_budget::bake::chain::{Accuracy, Length, Preset};
 use lod_budget::bake::simplify::Method;
 
 use inputs::{Found, Input};
+use progressive::ProgressiveArgs;
 use quadric::QuadricArgs;
 use scene::SceneArgs;
 use settings::Settings;
@@ -64,6 +66,8 @@ pub struct Args {
     chain: ChainArgs,
     #[command(flatten)]
     quadric: QuadricArgs,
+    #[command(flatten)]
+    progressive: ProgressiveArgs,
     #[command(flatten)]
     scene: SceneArgs,
 }
@@ -108,6 +112,7 @@ Writes to DIR/NAME, NAME being that of the file:
   NAME_LOD0.obj …     each level by itself
   NAME.json           the LOD table, in a scene without objects
   NAME.svg            the levels side by side
+  NAME.lodp           any level in between, with --progressive
   NAME.bake.json      what was baked how, to know next time";
 
 /// What a bake leaves behind.

@@ -71,7 +71,7 @@ impl Folder {
     /// Whether a bake may write a file of this name.
     fn is_output(&self, name: &str) -> bool {
         let ending = name.strip_prefix(&self.name).unwrap_or_default();
-        [".glb", ".json", ".svg", ".bake.json"].contains(&ending) || ending.starts_with("_LOD")
+        [".glb", ".json", ".svg", ".lodp", ".bake.json"].contains(&ending) || ending.starts_with("_LOD")
     }
 
     /// Removes what a bake before has left and this one has not replaced. A file that stays does no harm.
@@ -89,6 +89,8 @@ impl Folder {
 pub struct Outputs {
     pub chain: Chain,
     pub table: LodTable,
+    /// The file of the progressive mesh.
+    pub progressive: Option<Vec<u8>>,
 }
 
 impl Outputs {
@@ -121,6 +123,9 @@ impl Outputs {
         if settings.wants(Format::Sheet) {
             let chain = sheet::Chain { name: &row.name, levels: &levels };
             row.sheet_file = Some(put(".svg", sheet::svg(&[chain])?.as_bytes())?);
+        }
+        if let Some(progressive) = &self.progressive {
+            row.progressive_file = Some(put(".lodp", progressive)?);
         }
         Ok(stamps)
     }

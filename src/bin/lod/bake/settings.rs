@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use lod_budget::bake::chain::{Accuracy, Limits, Plan, Preset, Stops};
+use lod_budget::bake::progressive;
 use lod_budget::bake::scene;
 
 use super::{Args, ChainArgs, Format};
@@ -14,6 +15,8 @@ pub struct Settings {
     pub formats: Vec<Format>,
     /// What is done to scenes.
     pub scene: scene::Options,
+    /// What progressive mesh is made, if any.
+    pub progressive: Option<progressive::Options>,
     pub out: PathBuf,
     pub force: bool,
     /// As `--method` has it.
@@ -28,7 +31,9 @@ impl Settings {
         let plan = args.chain.plan();
         let plan = Plan { quadric: args.quadric.over(plan.quadric), ..plan };
         plan.check()?;
+        let like = progressive::Options { method: plan.quadric, ..progressive::Options::default() };
         Ok(Self {
+            progressive: args.progressive.options(like),
             plan,
             accuracy: args.chain.accuracy.accuracy(),
             formats: args.format.clone(),
@@ -47,7 +52,8 @@ impl Settings {
     /// All that the outputs depend on beside the mesh; equal keys make equal files.
     pub fn key(&self) -> String {
         let formats = [Format::Glb, Format::Obj, Format::Json, Format::Sheet].map(|f| (f, self.wants(f)));
-        format!("{} {:?} {:?} {formats:?}", env!("CARGO_PKG_VERSION"), self.plan, self.accuracy)
+        let beside = self.progressive.as_ref().map(|options| format!(" {options:?}")).unwrap_or_default();
+        format!("{} {:?} {:?} {formats:?}{beside}", env!("CARGO_PKG_VERSION"), self.plan, self.accuracy)
     }
 }
 

@@ -53,6 +53,9 @@ pub struct MeshRow {
     pub table_file: Option<String>,
     /// The levels side by side.
     pub sheet_file: Option<String>,
+    /// The progressive mesh.
+    #[serde(default)]
+    pub progressive_file: Option<String>,
 }
 
 /// What was made of a scene.
@@ -194,6 +197,7 @@ impl MeshRow {
     pub fn within(mut self, folder: &Folder) -> Self {
         let levels = self.levels.iter_mut().map(|level| &mut level.file);
         let files = levels.chain([&mut self.scene_file, &mut self.table_file, &mut self.sheet_file]);
+        let files = files.chain([&mut self.progressive_file]);
         for file in files.flatten() {
             *file = folder.file(file).display().to_string();
         }
