@@ -19,6 +19,9 @@ use glam::{DVec2, DVec3};
 /// What rounding can add, as a share.
 const SLACK: f64 = 1e-6;
 
+/// Ends of a border edge that are closer than this to where both go, as a share of its length, go there, too.
+const CLOSE: f64 = 1e-4;
+
 /// A corner of a triangle: which vertex, and where.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
@@ -146,6 +149,9 @@ impl Star {
     /// The old triangles with the ends of a border edge taken to some places, and the point of it that is nearest to
     /// where both vertices go taken there; and how far they had to go.
     fn bordered(&self, edge: [Corner; 2], places: [DVec3; 2]) -> (Vec<[Corner; 3]>, f64) {
+        // What is as good as there is there, so that no triangle is as good as flat.
+        let close = CLOSE * edge[0].at.distance(edge[1].at);
+        let places = places.map(|place| if place.distance(self.to) < close { self.to } else { place });
         let middle = nearest(edge.map(|corner| corner.at), self.to);
         let ends = edge.iter().zip(places).map(|(corner, place)| corner.at.distance(place));
         let moved = ends.fold(middle.distance(self.to), f64::max);

@@ -27,6 +27,9 @@ pub struct Options {
     pub measure: deviation::Options,
 }
 
+/// Nobody asks for the mean: samples are there to find where to look for the maximum.
+const FEW_SAMPLES: usize = 1 << 12;
+
 impl Default for Options {
     /// Down to where the method ends, with 4 marks while triangles halve.
     fn default() -> Self {
@@ -34,7 +37,7 @@ impl Default for Options {
             method: GarlandHeckbert::default(),
             base: Target::triangles(0),
             marks_per_halving: 4,
-            measure: deviation::Options::default(),
+            measure: deviation::Options { max_samples: FEW_SAMPLES, ..deviation::Options::default() },
         }
     }
 }
