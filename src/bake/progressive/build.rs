@@ -20,8 +20,8 @@ pub struct Options {
     /// Where the base mesh is. It has a triangle in any case.
     pub base: Target,
     /// How many prefixes are measured while the number of triangles halves; between them, bounds are what is known
-    /// without measuring, three to ten times too large on scanned meshes. 0 to measure none, which is as much faster as errors are
-    /// larger.
+    /// without measuring, three to ten times too large on scanned meshes. 0 to measure none, which is as much faster as
+    /// errors are larger.
     pub marks_per_halving: u32,
     /// How closely they are measured.
     pub measure: deviation::Options,

@@ -9,8 +9,8 @@ use crate::table::{LodTable, MAX_LEVELS};
 
 impl Progressive {
     /// The LOD table of so many levels, at least 1 and at most [`MAX_LEVELS`]: the runtime chooses among them, and
-    /// [`Progressive::extract`] or a [`Cursor`] makes the one that it chose, by its number of triangles. The finest has all splits, the
-    /// coarsest none, and the triangles of those between shrink by the same factor. There are fewer levels where
+    /// [`Progressive::extract`] or a [`Cursor`] makes the one that it chose, by its number of triangles. The
+    /// finest has all splits, the coarsest none, and the triangles of those between shrink by the same factor. There are fewer levels where
     /// fewer numbers of triangles are to be had.
     ///
     /// Every level is measured, as those of a [`Chain`] are.
