@@ -9,6 +9,7 @@
 //! | [`repair`] | what is wrong with a mesh, and what can be put right safely |
 //! | [`finding`] | what readers and repair have to report |
 //! | [`simplify`] | fewer triangles: the methods behind one interface |
+//! | [`progressive`] | a coarse mesh and the splits that lead to the original: any level, as a file that streams |
 //! | [`mod@split`] | a mesh that is in view near and far at once, in chunks without cracks |
 //! | [`subdivide`] | more triangles: from a control mesh to the smooth surface that is meant |
 //! | [`shapes`] | meshes to try it on |
@@ -27,6 +28,7 @@ pub mod geomorph;
 pub mod hierarchy;
 pub mod impostor;
 pub mod mesh;
+pub mod progressive;
 pub mod read;
 pub mod repair;
 pub mod scene;

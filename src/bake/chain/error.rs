@@ -3,7 +3,9 @@
 use std::fmt;
 
 use crate::bake::deviation::DeviationError;
+use crate::bake::read::MeshError;
 use crate::bake::simplify::SimplifyError;
+use crate::table::TableError;
 
 /// Why a mesh is not baked.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +20,10 @@ pub enum BakeError {
     Simplify(SimplifyError),
     /// A level cannot be measured.
     Deviation(DeviationError),
+    /// A progressive mesh is not as it should be.
+    File(MeshError),
+    /// The levels make no table.
+    Table(TableError),
     /// The progress callback said so.
     Cancelled,
 }
@@ -30,6 +36,8 @@ impl fmt::Display for BakeError {
             Self::NoExtent => f.write_str("its box must be larger than a point, and its diagonal finite"),
             Self::Simplify(error) => error.fmt(f),
             Self::Deviation(error) => error.fmt(f),
+            Self::File(error) => error.fmt(f),
+            Self::Table(error) => error.fmt(f),
             Self::Cancelled => f.write_str("cancelled"),
         }
     }
@@ -46,5 +54,17 @@ impl From<SimplifyError> for BakeError {
 impl From<DeviationError> for BakeError {
     fn from(error: DeviationError) -> Self {
         Self::Deviation(error)
+    }
+}
+
+impl From<MeshError> for BakeError {
+    fn from(error: MeshError) -> Self {
+        Self::File(error)
+    }
+}
+
+impl From<TableError> for BakeError {
+    fn from(error: TableError) -> Self {
+        Self::Table(error)
     }
 }

@@ -51,6 +51,7 @@ pub use error::SimplifyError;
 pub use melax::Melax;
 pub use method::{Method, UnknownMethod};
 pub use quadric::{Attributes, Contraction, Cost, GarlandHeckbert, Placement, Topology};
+pub(in crate::bake) use quadric::{Seen, Witness};
 pub use triangle::TriangleCollapse;
 
 use std::ops::ControlFlow;

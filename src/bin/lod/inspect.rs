@@ -9,11 +9,12 @@ use lod_budget::files::{Break, BreakKind, Inspection, inspect};
 use lod_budget::table::LevelRecord;
 use serde::Serialize;
 
+use crate::inspect_progressive::{self, CountsRow, ProgressiveInspection};
 use crate::text::{count, counted, plain};
 
-/// Say what is in a scene, a camera path or a knapsack instance, and what is odd about it.
+/// Say what is in a scene, a camera path, a knapsack instance or a progressive mesh, and what is odd about it.
 ///
-/// Scenes are .json, .glb and .gltf files, paths .csv, .tum and .txt, instances .json.
+/// Scenes are .json, .glb and .gltf files, paths .csv, .tum and .txt, instances .json, progressive meshes .lodp.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
@@ -31,27 +32,67 @@ Examples:
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct Inspected<'a> {
+struct Inspected<'a, I> {
     file: String,
     #[serde(flatten)]
-    inspection: &'a Inspection,
+    inspection: &'a I,
 }
 
 pub fn run(args: &Args, out: &mut dyn Write) -> anyhow::Result<()> {
-    let inspection = &inspect(&args.file)?;
+    if args.file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("lodp")) {
+        let inspection = &inspect_progressive::inspect(&args.file)?;
+        return say(args, inspection, progressive_in_words, out);
+    }
+    say(args, &inspect(&args.file)?, in_words, out)
+}
+
+/// Prints an inspection as it was asked for.
+fn say<I: Serialize>(
+    args: &Args,
+    inspection: &I,
+    words: impl Fn(&I) -> String,
+    out: &mut dyn Write,
+) -> anyhow::Result<()> {
     if args.json {
         let inspected = Inspected { file: args.file.display().to_string(), inspection };
         writeln!(out, "{}", serde_json::to_string_pretty(&inspected)?)?;
-        return Ok(());
+    } else {
+        write!(out, "{}", words(inspection))?;
     }
-    let words = match inspection {
+    Ok(())
+}
+
+fn in_words(inspection: &Inspection) -> String {
+    match inspection {
         Inspection::Scene(tables) if !tables.library.is_empty() => library_in_words(tables),
         Inspection::Scene(scene) => scene_in_words(scene),
         Inspection::Path(path) => path_in_words(path),
         Inspection::Instance(instance) => instance_in_words(instance),
+    }
+}
+
+fn progressive_in_words(p: &ProgressiveInspection) -> String {
+    let mut lines = Lines::default();
+    let bytes = |n: usize| count(n as u64);
+    let counts = |c: &CountsRow| {
+        let [positions, wedges, triangles] = [c.positions, c.wedges, c.triangles].map(|n| count(n as u64));
+        format!("{triangles} triangles, {positions} positions, {wedges} wedges")
     };
-    write!(out, "{words}")?;
-    Ok(())
+    lines.say("Mesh", plain(&p.name));
+    lines.say("Base", counts(&p.base));
+    lines.say("Splits", format!("{}, to {}", count(p.splits as u64), counts(&p.full)));
+    lines.say("Original", counts(&p.original));
+    let parts = [("base", p.base_bytes), ("splits", p.split_bytes), ("original", p.original_bytes)];
+    let parts = parts.map(|(name, n)| format!("{name} {}", bytes(n))).join(", ");
+    let each = p.bytes as f64 / p.original.triangles.max(1) as f64;
+    lines.say("Bytes", format!("{}, {each:.2} a triangle: {parts}", bytes(p.bytes)));
+    for mark in &p.marks {
+        lines.say("Error", format!("{} at {} triangles", mark.error, count(mark.triangles as u64)));
+    }
+    if p.is_truncated {
+        lines.say("Odd", "it ends too early: what is whole can be used, but not the original");
+    }
+    lines.0
 }
 
 /// Lines of a name and what there is to say.

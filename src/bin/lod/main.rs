@@ -5,6 +5,7 @@ mod bake;
 mod compare;
 mod generate;
 mod inspect;
+mod inspect_progressive;
 mod solve;
 mod text;
 

@@ -122,6 +122,17 @@ impl<'a> Layers<'a> {
         alike.of.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(|class| stands[class as usize])).collect()
     }
 
+    /// The wedges, one in each layer, of a corner of a triangle.
+    pub(super) fn look(&self, triangle: usize, corner: usize) -> [u32; 3] {
+        std::array::from_fn(|k| self.layers.get(k).map_or(0, |layer| layer.corner(triangle, corner)))
+    }
+
+    /// The values of a look, as [`Layers::write`] has them.
+    pub(super) fn finished(&self, look: [u32; 3]) -> impl Iterator<Item = f32> {
+        let layers = self.kinds.iter().zip(&self.layers).zip(look);
+        layers.flat_map(|((kind, layer), wedge)| kind.finished(layer.values(wedge)))
+    }
+
     /// Gives wedges of what is left the values that were worked out. `corner_of` says for each a triangle and corner that
     /// has it.
     pub(super) fn write(&self, corner_of: &[(usize, usize)], mesh: &mut Mesh) {
@@ -152,22 +163,30 @@ impl Kind {
         }
     }
 
-    /// Sets the values of a wedge, normals to a length of 1 and colours to what colours can be.
+    /// Sets the values of a wedge.
     fn write(self, values: &[f32], wedge: usize, mesh: &mut Mesh) {
+        let values = self.finished(values);
         match self {
-            Self::Normals => {
-                let normal = Vec3::from_slice(values);
-                let is_unit = (normal.length_squared() - 1.0).abs() < 1e-5;
-                mesh.normals[wedge] = if is_unit { normal } else { normal.normalize_or_zero() };
-            }
+            Self::Normals => mesh.normals[wedge] = Vec3::from_slice(&values),
             Self::Uvs => {
                 for (set, uv) in mesh.uvs.iter_mut().zip(values.chunks_exact(2)) {
                     set[wedge] = Vec2::from_slice(uv);
                 }
             }
-            Self::Colours => {
-                mesh.colours[wedge] = Vec4::from_slice(values).clamp(Vec4::ZERO, Vec4::ONE);
+            Self::Colours => mesh.colours[wedge] = Vec4::from_slice(&values),
+        }
+    }
+
+    /// The values of a wedge, normals with a length of 1 and colours as colours can be.
+    fn finished(self, values: &[f32]) -> Vec<f32> {
+        match self {
+            Self::Normals => {
+                let normal = Vec3::from_slice(values);
+                let is_unit = (normal.length_squared() - 1.0).abs() < 1e-5;
+                if is_unit { normal } else { normal.normalize_or_zero() }.to_array().to_vec()
             }
+            Self::Uvs => values.to_vec(),
+            Self::Colours => Vec4::from_slice(values).clamp(Vec4::ZERO, Vec4::ONE).to_array().to_vec(),
         }
     }
 }

@@ -23,6 +23,7 @@ mod pairs;
 mod placement;
 
 pub use cost::Cost;
+pub(in crate::bake) use greedy::witness::{Seen, Witness};
 pub use layers::Attributes;
 pub use placement::Placement;
 
@@ -123,6 +124,20 @@ impl GarlandHeckbert {
         let stopped = greedy.run(task.target, progress);
         let record = greedy.record.take().unwrap_or_default();
         Ok((greedy.finish(stopped), record))
+    }
+
+    /// Simplifies as [`Simplifier::simplify`] does while somebody looks on.
+    pub(in crate::bake) fn attend<'a>(
+        &'a self,
+        task: &'a Task<'a>,
+        witness: &'a mut dyn Witness,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Stopped, SimplifyError> {
+        task.check()?;
+        let mut greedy = Greedy::new(self, task);
+        greedy.witness = Some(witness);
+        greedy.tell(|witness, seen| witness.begin(seen));
+        Ok(greedy.run(task.target, progress))
     }
 }
 

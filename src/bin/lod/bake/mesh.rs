@@ -11,6 +11,7 @@ use lod_budget::bake::read;
 use super::geomorph;
 use super::inputs::{Found, Input};
 use super::outputs::{Folder, Outputs};
+use super::progressive;
 use super::record::{Record, Stamp, input_stamps};
 use super::settings::Settings;
 use super::subdivide::{self, Subdivision};
@@ -54,6 +55,8 @@ fn baked(input: &Input, settings: &Settings, tell: &mut Tell<'_>) -> anyhow::Res
     let bake = |progress: &mut Asked<'_>| settings.plan.bake(&file.mesh, progress);
     let (mut row, mut outputs) = timed(&input.name, bake, settings, tell).with_context(of_input)?;
     outputs.end_with_impostor(&mut row, settings).with_context(of_input)?;
+    let progressive = settings.progressive.as_ref().map(|options| progressive::file(&file.mesh, options));
+    outputs.progressive = progressive.transpose().with_context(of_input)?;
     Ok((MeshRow { input: of_input(), findings, ..row }, outputs))
 }
 
@@ -108,8 +111,9 @@ pub fn timed<E: Error + Send + Sync + 'static>(
         scene_file: None,
         table_file: None,
         sheet_file: None,
+        progressive_file: None,
     };
-    Ok((row, Outputs { chain, table, geomorphs, card: None }))
+    Ok((row, Outputs { chain, table, geomorphs, card: None, progressive: None }))
 }
 
 fn diagonal(chain: &Chain) -> f64 {

@@ -5,6 +5,7 @@ mod impostor;
 mod inputs;
 mod mesh;
 mod outputs;
+mod progressive;
 mod quadric;
 mod record;
 mod scene;
@@ -28,6 +29,7 @@ use lod_budget::bake::simplify::Method;
 use geomorph::GeomorphArgs;
 use impostor::ImpostorArgs;
 use inputs::{Found, Input};
+use progressive::ProgressiveArgs;
 use quadric::QuadricArgs;
 use scene::SceneArgs;
 use settings::Settings;
@@ -76,6 +78,8 @@ pub struct Args {
     #[command(flatten)]
     impostor: ImpostorArgs,
     #[command(flatten)]
+    progressive: ProgressiveArgs,
+    #[command(flatten)]
     scene: SceneArgs,
     #[command(flatten)]
     subdivide: SubdivideArgs,
@@ -123,6 +127,7 @@ Writes to DIR/NAME, NAME being that of the file:
   NAME.json           the LOD table, in a scene without objects
   NAME.impostor.json  with --impostor: frames, cameras and atlas
   NAME.svg            the levels side by side
+  NAME.lodp           any level in between, with --progressive
   NAME.bake.json      what was baked how, to know next time";
 
 /// What a bake leaves behind.

@@ -73,7 +73,7 @@ impl Folder {
     /// Whether a bake may write a file of this name.
     fn is_output(&self, name: &str) -> bool {
         let ending = name.strip_prefix(&self.name).unwrap_or_default();
-        [".glb", ".json", ".svg", ".impostor.json", ".bake.json"].contains(&ending)
+        [".glb", ".json", ".svg", ".impostor.json", ".lodp", ".bake.json"].contains(&ending)
             || ending.starts_with("_LOD")
     }
 
@@ -96,6 +96,8 @@ pub struct Outputs {
     pub geomorphs: Vec<Geomorph>,
     /// The last level of the table, where it is an impostor.
     pub card: Option<Card>,
+    /// The file of the progressive mesh.
+    pub progressive: Option<Vec<u8>>,
 }
 
 impl Outputs {
@@ -143,6 +145,9 @@ impl Outputs {
         if settings.wants(Format::Sheet) {
             let chain = sheet::Chain { name: &row.name, levels: &levels };
             row.sheet_file = Some(put(".svg", sheet::svg(&[chain])?.as_bytes())?);
+        }
+        if let Some(progressive) = &self.progressive {
+            row.progressive_file = Some(put(".lodp", progressive)?);
         }
         Ok(stamps)
     }

@@ -143,7 +143,7 @@ fn measure_authored(scene: &Scene<'_>, settings: &Settings, jobs: usize) -> Vec<
     work::each(scene.authored(), jobs, |_, authored| {
         let chain = Chain::of_levels(authored.levels.clone(), &settings.plan.measure).ok()?;
         let table = chain.table(settings.accuracy).ok()?;
-        Some(Outputs { chain, table, geomorphs: Vec::new(), card: None })
+        Some(Outputs { chain, table, geomorphs: Vec::new(), card: None, progressive: None })
     })
 }
 

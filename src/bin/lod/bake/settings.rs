@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use lod_budget::bake::chain::{Accuracy, Limits, Plan, Preset, Stops};
-use lod_budget::bake::{impostor, scene};
+use lod_budget::bake::{impostor, progressive, scene};
 
 use super::geomorph::GeomorphArgs;
 use super::subdivide::Subdivision;
@@ -21,6 +21,8 @@ pub struct Settings {
     pub impostor: Option<impostor::Options>,
     /// What is done to scenes.
     pub scene: scene::Options,
+    /// What progressive mesh is made, if any.
+    pub progressive: Option<progressive::Options>,
     pub out: PathBuf,
     pub force: bool,
     /// As `--method` has it.
@@ -37,7 +39,9 @@ impl Settings {
         plan.check()?;
         let impostor = args.impostor.options();
         impostor.as_ref().map_or(Ok(()), impostor::Options::check)?;
+        let like = progressive::Options { method: plan.quadric, ..progressive::Options::default() };
         Ok(Self {
+            progressive: args.progressive.options(like),
             subdivide: args.subdivide.over(&plan)?,
             plan,
             accuracy: args.chain.accuracy.accuracy(),
@@ -59,10 +63,12 @@ impl Settings {
     /// All that the outputs depend on beside the mesh; equal keys make equal files.
     pub fn key(&self) -> String {
         let formats = [Format::Glb, Format::Obj, Format::Json, Format::Sheet].map(|f| (f, self.wants(f)));
-        let Self { plan, subdivide, accuracy, impostor, .. } = self;
+        let Self { plan, subdivide, accuracy, impostor, progressive, .. } = self;
         let geomorph = GeomorphArgs::key(self.geomorph);
         let version = env!("CARGO_PKG_VERSION");
-        format!("{version} {plan:?} {subdivide:?} {accuracy:?} {formats:?} {impostor:?}{geomorph}")
+        format!(
+            "{version} {plan:?} {subdivide:?} {accuracy:?} {formats:?} {impostor:?} {progressive:?}{geomorph}"
+        )
     }
 }
 

@@ -58,6 +58,9 @@ pub struct MeshRow {
     pub table_file: Option<String>,
     /// The levels side by side.
     pub sheet_file: Option<String>,
+    /// The progressive mesh.
+    #[serde(default)]
+    pub progressive_file: Option<String>,
 }
 
 /// What was made of a scene.
@@ -204,6 +207,7 @@ impl MeshRow {
         let impostor = self.impostor.iter_mut().map(|impostor| &mut impostor.file);
         let files =
             levels.chain(impostor).chain([&mut self.scene_file, &mut self.table_file, &mut self.sheet_file]);
+        let files = files.chain([&mut self.progressive_file]);
         for file in files.flatten() {
             *file = folder.file(file).display().to_string();
         }

@@ -4,6 +4,7 @@ mod outcome;
 mod prepare;
 mod step;
 mod verdict;
+pub(in crate::bake) mod witness;
 
 use std::hint::black_box;
 use std::ops::ControlFlow;
@@ -12,6 +13,7 @@ use glam::{DVec3, Vec3};
 
 use step::Step;
 use verdict::Verdict;
+use witness::{Seen, Witness};
 
 use crate::bake::simplify::fans::Fans;
 use crate::bake::simplify::link::{Stamps, others};
@@ -129,6 +131,8 @@ pub(super) struct Greedy<'a> {
     error: f64,
     /// What was contracted, in order, if somebody wants to know.
     pub(super) record: Option<Vec<Contraction>>,
+    /// Who looks on, if anybody does.
+    pub(super) witness: Option<&'a mut dyn Witness>,
     /// The fan of a contracted vertex, in the making.
     fan: Vec<u32>,
     /// What a vertex may be contracted with.
@@ -296,6 +300,7 @@ impl<'a> Greedy<'a> {
     fn contract(&mut self, step: &Step) {
         let Move { kept: heir, gone: parted, .. } = step.way;
         let (kept, gone) = (heir as usize, parted as usize);
+        self.tell(|witness, seen| witness.before(seen, heir, parted));
         if let Some(layers) = &mut self.layers {
             layers.contract(Around { triangles: &self.triangles, fans: &self.fans }, &step.way);
         }
@@ -311,6 +316,7 @@ impl<'a> Greedy<'a> {
         self.marks[kept] |= self.marks[gone] & mark::INHERITED;
         self.merge_fans(heir, parted);
         self.merge_pairs(heir, parted);
+        self.tell(|witness, seen| witness.after(seen, heir, parted));
         self.marks[gone] = mark::GONE;
         self.choose(heir, None);
     }
@@ -321,6 +327,15 @@ impl<'a> Greedy<'a> {
         let contraction =
             Contraction { kept, gone, position: step.position, error: self.in_units(step.error) };
         self.record.iter_mut().for_each(|record| record.push(contraction));
+    }
+
+    /// Tells the witness something, if there is one.
+    #[inline]
+    pub(super) fn tell(&mut self, tell: impl FnOnce(&mut dyn Witness, &Seen)) {
+        if let Some(witness) = self.witness.take() {
+            tell(witness, &Seen { greedy: self });
+            self.witness = Some(witness);
+        }
     }
 
     /// Gives `kept` the triangles of both but for those at the edge, which go.

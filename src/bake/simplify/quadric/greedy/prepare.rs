@@ -52,6 +52,7 @@ impl<'a> Greedy<'a> {
             most: -1.0,
             error: 0.0,
             record: None,
+            witness: None,
             fan: Vec::new(),
             partners: Vec::new(),
         };
