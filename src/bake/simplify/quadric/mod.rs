@@ -21,18 +21,19 @@ mod layer;
 mod layers;
 mod pairs;
 mod placement;
+mod record;
 
 pub use cost::Cost;
 pub(in crate::bake) use greedy::witness::{Seen, Witness};
 pub use layers::Attributes;
 pub use placement::Placement;
+pub use record::Contraction;
 
 use std::ops::ControlFlow;
 
-use glam::Vec3;
-
 use super::{Progress, Simplified, Simplifier, SimplifyError, Stopped, Target, Task};
 use greedy::Greedy;
+use record::Record;
 
 /// Whether contractions may change the topology.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -92,20 +93,6 @@ impl Default for GarlandHeckbert {
     }
 }
 
-/// One contraction of two vertices, named as in the mesh of the task: what progressive meshes and vertex hierarchies
-/// are made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contraction {
-    /// The vertex that both become, which goes to `position`.
-    pub kept: u32,
-    /// The vertex that goes.
-    pub gone: u32,
-    /// Where they go.
-    pub position: Vec3,
-    /// The error as the method estimates it, in object units. No bound of the deviation, and it may fall.
-    pub error: f32,
-}
-
 impl GarlandHeckbert {
     /// Simplifies as [`Simplifier::simplify`] does and tells every contraction, in order. Triangles that used both of
     /// its vertices go with it.
@@ -117,27 +104,34 @@ impl GarlandHeckbert {
         task: &Task,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(Simplified, Vec<Contraction>), SimplifyError> {
-        task.check()?;
-        let mut greedy = Greedy::new(self, task);
-        let record = greedy.record.insert(Vec::new());
-        record.reserve(task.mesh.positions.len());
-        let stopped = greedy.run(task.target, progress);
-        let record = greedy.record.take().unwrap_or_default();
-        Ok((greedy.finish(stopped), record))
+        let mut record = Record::default();
+        let (greedy, stopped) = self.run_before(task, &mut record, progress)?;
+        let simplified = greedy.finish(stopped);
+        Ok((simplified, record.contractions))
     }
 
     /// Simplifies as [`Simplifier::simplify`] does while somebody looks on.
-    pub(in crate::bake) fn attend<'a>(
+    pub(in crate::bake) fn attend(
+        &self,
+        task: &Task,
+        witness: &mut dyn Witness,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Stopped, SimplifyError> {
+        self.run_before(task, witness, progress).map(|(_, stopped)| stopped)
+    }
+
+    fn run_before<'a>(
         &'a self,
         task: &'a Task<'a>,
         witness: &'a mut dyn Witness,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<Stopped, SimplifyError> {
+    ) -> Result<(Greedy<'a>, Stopped), SimplifyError> {
         task.check()?;
         let mut greedy = Greedy::new(self, task);
         greedy.witness = Some(witness);
         greedy.tell(|witness, seen| witness.begin(seen));
-        Ok(greedy.run(task.target, progress))
+        let stopped = greedy.run(task.target, progress);
+        Ok((greedy, stopped))
     }
 }
 

@@ -22,7 +22,7 @@ use crate::bake::simplify::quadric::guard::{Facing, Guard};
 use crate::bake::simplify::quadric::layer::{Around, Move};
 use crate::bake::simplify::quadric::layers::Layers;
 use crate::bake::simplify::quadric::pairs::Pairs;
-use crate::bake::simplify::quadric::{Contraction, GarlandHeckbert, Topology};
+use crate::bake::simplify::quadric::{GarlandHeckbert, Topology};
 use crate::bake::simplify::queue::Queue;
 use crate::bake::simplify::{Progress, Stopped, Target, Task};
 
@@ -129,8 +129,6 @@ pub(super) struct Greedy<'a> {
     most: f32,
     /// Largest squared error so far, scaled.
     error: f64,
-    /// What was contracted, in order, if somebody wants to know.
-    pub(super) record: Option<Vec<Contraction>>,
     /// Who looks on, if anybody does.
     pub(super) witness: Option<&'a mut dyn Witness>,
     /// The fan of a contracted vertex, in the making.
@@ -311,7 +309,6 @@ impl<'a> Greedy<'a> {
         self.quadrics[kept] = step.quadric;
         self.areas[kept] += self.areas[gone];
         self.error = self.error.max(step.error);
-        self.note(step);
         self.heirs[gone] = heir;
         self.marks[kept] |= self.marks[gone] & mark::INHERITED;
         self.merge_fans(heir, parted);
@@ -319,14 +316,6 @@ impl<'a> Greedy<'a> {
         self.tell(|witness, seen| witness.after(seen, heir, parted));
         self.marks[gone] = mark::GONE;
         self.choose(heir, None);
-    }
-
-    fn note(&mut self, step: &Step) {
-        let Move { kept, gone, .. } = step.way;
-        let [kept, gone] = [kept, gone].map(|vertex| self.order[vertex as usize]);
-        let contraction =
-            Contraction { kept, gone, position: step.position, error: self.in_units(step.error) };
-        self.record.iter_mut().for_each(|record| record.push(contraction));
     }
 
     /// Tells the witness something, if there is one.

@@ -51,7 +51,6 @@ impl<'a> Greedy<'a> {
             is_free: false,
             most: -1.0,
             error: 0.0,
-            record: None,
             witness: None,
             fan: Vec::new(),
             partners: Vec::new(),

@@ -53,6 +53,11 @@ impl<'g> Seen<'g, '_> {
         self.greedy.positions[vertex as usize]
     }
 
+    /// The largest error of a contraction so far, as the method estimates it, in object units.
+    pub(in crate::bake) fn error(&self) -> f32 {
+        self.greedy.in_units(self.greedy.error)
+    }
+
     /// The position of the task's mesh that a vertex stems from by now.
     pub(in crate::bake) fn origin(&self, vertex: u32) -> u32 {
         self.greedy.origins[vertex as usize]
