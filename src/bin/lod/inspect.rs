@@ -1,5 +1,7 @@
 //! `lod inspect`: what is in a file, and what is odd about it.
 
+mod baked;
+
 use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
@@ -11,9 +13,9 @@ use serde::Serialize;
 
 use crate::text::{count, counted, plain};
 
-/// Say what is in a scene, a camera path or a knapsack instance, and what is odd about it.
+/// Say what is in a scene, a camera path, a knapsack instance, a vertex hierarchy or an impostor, and what is odd about it.
 ///
-/// Scenes are .json, .glb and .gltf files, paths .csv, .tum and .txt, instances .json.
+/// Scenes are .json, .glb and .gltf files, paths .csv, .tum and .txt, instances and impostors .json, hierarchies .lodh.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
@@ -38,6 +40,9 @@ struct Inspected<'a> {
 }
 
 pub fn run(args: &Args, out: &mut dyn Write) -> anyhow::Result<()> {
+    if let Some(baked) = baked::inspect(&args.file)? {
+        return baked::print(&baked, args, out);
+    }
     let inspection = &inspect(&args.file)?;
     if args.json {
         let inspected = Inspected { file: args.file.display().to_string(), inspection };
