@@ -17,7 +17,7 @@ fn all() -> impl Iterator<Item = (Scheme, String, ControlMesh)> {
 }
 
 /// The faces around a vertex after many subdivisions, as large as they were: per face its corner's normal, by the areas
-/// of those it hangs together with. `None` where they come to no plane, or only as slowly as a logarithm: tips, sides of
+/// of those it hangs together with. `None` where they come to no plane, or only slowly: many faces, tips, sides of
 /// corners and creases that are too wide, and single quads.
 fn deep_normals(level: &Level, scheme: Scheme, vertex: u32) -> Vec<Option<DVec3>> {
     let sides = if scheme == Scheme::Loop { 3 } else { 4 };
@@ -40,7 +40,7 @@ fn deep_normals(level: &Level, scheme: Scheme, vertex: u32) -> Vec<Option<DVec3>
     let mut normals = vec![None; own.len()];
     for fan in fans(&net, &own, is_cut) {
         let is_plane = match (rule, scheme, fan.corners.len()) {
-            (Rule::Smooth, _, faces) => faces > 2,
+            (Rule::Smooth, _, faces) => (3..=12).contains(&faces),
             (Rule::Crease(_), Scheme::Loop, faces) => (2..=5).contains(&faces) || own.len() == 1,
             (Rule::Crease(_), Scheme::CatmullClark, faces) => (2..=4).contains(&faces),
             (Rule::Corner, _, faces) => faces == 1,
