@@ -24,7 +24,8 @@ pub(super) struct Sides {
 }
 
 impl Sides {
-    /// Catmull and Clark's scheme needs a level of quads. Some 0.5 µs per corner, and 0.1 ms where there are no masks.
+    /// Catmull and Clark's scheme needs a level of quads. O(n log n), n being the corners at a vertex; where there are no
+    /// masks, as many small subdivisions as [`limits`](super::limits::limits) makes.
     pub fn of(level: &Level, scheme: Scheme) -> Self {
         let net = &level.net;
         let mut sides = Self { of_corner: vec![0; net.corners.len()], normals: Vec::new() };
