@@ -60,7 +60,7 @@ fn update(criterion: &mut Criterion, hierarchy: Arc<Hierarchy>) {
 /// Around the middle of the terrain, along a circle whose circumference is twice its width.
 fn view(way: f32) -> View {
     let at = Vec2::from_angle(way * std::f32::consts::PI);
-    let eye = (Vec2::splat(0.5) + at * 0.318).extend(0.25);
+    let eye = (Vec2::splat(0.5) + at * std::f32::consts::FRAC_1_PI).extend(0.25);
     let forward = at.perp().extend(-0.3).normalize();
     let right = forward.cross(Vec3::Z).normalize();
     let rotation = Quat::from_mat3(&Mat3::from_cols(right, right.cross(forward), -forward));

@@ -1,13 +1,15 @@
 //! The `lod` command from outside: what it prints, what it writes, what it refuses.
 #![cfg(feature = "cli")]
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use lod_budget::bake::hierarchy;
 use lod_budget::bake::impostor::Impostor;
+use lod_budget::bake::simplify::{GarlandHeckbert, quietly};
 use lod_budget::files::{CameraPath, Scene};
 use lod_budget::knapsack::{Instance, exact, greedy};
 use lod_budget::sim::generate::{Recipe, scatter};
@@ -73,6 +75,19 @@ impl Room {
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).expect("UTF-8")
+}
+
+/// Of the levels of a mesh, as printed.
+fn triangles(mesh: &Value) -> Vec<u64> {
+    let levels = mesh["levels"].as_array().into_iter().flatten();
+    levels.filter_map(|level| level["triangles"].as_u64()).collect()
+}
+
+/// No level has more triangles than were asked for, and at most one less, since a contraction may take two.
+fn assert_met(triangles: &[u64], asked: &[u64]) {
+    let is_met = |(&triangles, &asked): (&u64, &u64)| triangles <= asked && asked <= triangles + 1;
+    assert_eq!(triangles.len(), asked.len(), "{triangles:?}");
+    assert!(triangles.iter().zip(asked).all(is_met), "{triangles:?}, not {asked:?}");
 }
 
 const PATH: &str = "time_s,x,y,z,qx,qy,qz,qw\n0,0,2,30,0,0,0,1\n0.1,0,2,28,0,0,0,1\n0.3,0,2,20,0,0,0,1\n";
@@ -626,8 +641,7 @@ fn a_bake_has_every_key_and_every_file_it_names() {
     assert_eq!((mesh["input"].as_str(), mesh["method"].as_str()), (Some("field.obj"), Some("quadric")));
     assert!(mesh["seconds"].as_f64() > Some(0.0) && mesh["measure_seconds"].as_f64() > Some(0.0));
     let levels = mesh["levels"].as_array().expect("levels");
-    let triangles: Vec<_> = levels.iter().map(|level| level["triangles"].as_u64()).collect();
-    assert_eq!(triangles, [Some(128), Some(64), Some(32), Some(16)]);
+    assert_met(&triangles(mesh), &[128, 64, 32, 16]);
     for (i, level) in levels.iter().enumerate() {
         let number = |key: &str| level[key].as_f64().unwrap_or_else(|| panic!("{key} of {level}"));
         assert_eq!(number("level"), i as f64);
@@ -690,23 +704,189 @@ fn a_bake_can_end_with_an_impostor() {
     assert!(!room.path("octahedral/field/field.impostor.json").exists(), "it is stale");
 }
 
+const CAGE: &str = "\
+v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1
+f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+fn workshop() -> Room {
+    let room = Room::new();
+    room.put("cage.obj", CAGE);
+    room
+}
+
+/// The vertices of an OBJ, and with how many normals they are shown in all.
+fn places(text: &str) -> (Vec<String>, usize) {
+    let lines = |kind: &'static str| text.lines().filter_map(move |line| line.strip_prefix(kind));
+    let corners: BTreeSet<&str> = lines("f ").flat_map(str::split_whitespace).collect();
+    assert!(corners.iter().all(|corner| corner.contains("//")), "every corner has a normal");
+    (lines("v ").map(str::to_owned).collect(), corners.len())
+}
+
+#[test]
+fn levels_go_upwards_from_a_cage() {
+    let room = workshop();
+    let baked = room.json("bake cage.obj --subdivide 2 --json");
+    let mesh = &baked["meshes"][0];
+    assert_eq!((mesh["method"].as_str(), triangles(mesh)), (Some("catmull-clark"), vec![192, 48, 12]));
+    let seconds = |key: &str| mesh[key].as_f64().expect("seconds");
+    assert!(seconds("seconds") > 0.0 && seconds("measure_seconds") > 0.0);
+    let levels = mesh["levels"].as_array().expect("levels");
+    let errors: Vec<f64> = levels.iter().filter_map(|level| level["error"].as_f64()).collect();
+    assert!(errors.len() == 3 && errors[0] > 0.0 && errors.is_sorted(), "{errors:?}");
+    let texts = levels.iter().map(|level| room.read(level["file"].as_str().expect("a file")));
+    let places: Vec<_> = texts.map(|text| places(&text)).collect();
+    for pair in places.windows(2) {
+        assert!(pair[0].0.starts_with(&pair[1].0), "finer levels keep the vertices of coarser ones");
+        assert_eq!(pair[0].0.len(), pair[0].1, "a smooth vertex has one normal");
+    }
+    let table = Scene::read(&room.path(mesh["table_file"].as_str().expect("a table"))).expect("a table");
+    let in_table = table.tables[0].levels().iter().map(|level| u64::from(level.triangles));
+    assert_eq!(in_table.collect::<Vec<_>>(), [192, 48, 12]);
+    let creased = room.json("bake cage.obj --subdivide 1 --crease-angle 60 --out creased --json");
+    let finest = &creased["meshes"][0]["levels"][0];
+    let (corners, normals) = self::places(&room.read(finest["file"].as_str().expect("a file")));
+    assert_eq!((corners.len(), normals), (26, 6 * 9), "every side of the cube has normals of its own");
+    assert_eq!(finest["attained"].as_f64(), Some(0.0));
+}
+
+#[test]
+fn subdivision_is_limited_and_named() {
+    let room = workshop();
+    let bake = |options: &str| room.json(&format!("bake cage.obj --format json --json {options}"));
+    let counts = |options: &str| triangles(&bake(options)["meshes"][0]);
+    assert_eq!(counts("--subdivide 9 --most-triangles 200"), [192, 48, 12]);
+    assert_eq!(counts("--subdivide 9 --within 50%"), [48, 12]);
+    room.put("tent.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    let tent = room.json("bake tent.obj --subdivide 1 --format json --json");
+    assert_eq!(tent["meshes"][0]["method"], "loop");
+    room.refused("bake cage.obj --subdivide 2 --scheme loop", &["cage.obj", "face 0", "triangle"]);
+    room.refused("bake cage.obj --subdivide 2 --most-triangles 40", &["cage.obj", "at most 40", "48"]);
+    let words = room.done("bake cage.obj --subdivide 1 --out words");
+    assert!(words.contains("1 mesh baked") && words.contains("s to make"), "{words}");
+}
+
+#[test]
+fn subdivision_that_makes_no_sense_is_refused() {
+    let room = workshop();
+    for number in ["0", "254", "-1", "x"] {
+        room.refused(&format!("bake cage.obj --subdivide={number}"), &[number]);
+    }
+    for other in ["--levels 3", "--ratios 0.5", "--method melax", "--scene", "--split 100"] {
+        let name = other.split(' ').next().expect("a name");
+        room.refused(&format!("bake cage.obj --subdivide 2 {other}"), &["--subdivide", name]);
+    }
+    for lonely in ["--scheme loop", "--crease-angle 30", "--within 1%", "--most-triangles 9"] {
+        room.refused(&format!("bake cage.obj {lonely}"), &["--subdivide"]);
+    }
+    room.refused("bake cage.obj --subdivide 2 --scheme doo-sabin", &["doo-sabin", "catmull-clark"]);
+    room.refused("bake cage.obj --subdivide 2 --crease-angle 181", &["181", "180"]);
+    room.refused("bake cage.obj --subdivide 2 --within=-1", &["-1", "positive"]);
+    assert!(!room.path("baked").exists());
+}
+
+/// The impostor is of the finest level, which is itself off the surface that is meant.
+#[test]
+fn levels_upwards_can_end_with_an_impostor() {
+    let room = workshop();
+    let bake = |options: &str| {
+        let command = format!("bake cage.obj --subdivide 2 --impostor octahedral --json {options}");
+        room.json(&command)["meshes"][0].clone()
+    };
+    let mesh = bake("");
+    let levels = mesh["levels"].as_array().expect("levels");
+    assert!(mesh["impostor"]["left_out"].is_null(), "{mesh}");
+    let text = room.read(mesh["impostor"]["file"].as_str().expect("a layout"));
+    let impostor = Impostor::from_json(text.as_bytes(), "it").expect("a layout");
+    let finest = levels[0]["hausdorff"].as_f64().expect("a distance");
+    let last = levels[levels.len() - 1]["error"].as_f64().expect("an error");
+    assert!(finest > 0.0 && last >= impostor.error + finest, "{last} < {} + {finest}", impostor.error);
+    assert!(mesh["impostor"]["error"].as_f64() >= Some(impostor.error + finest));
+}
+
+/// Vertices of a finer level go to the nearest points of the coarser one: no farther than both levels are off.
+#[test]
+fn levels_upwards_can_morph() {
+    let room = workshop();
+    let mesh = room.json("bake cage.obj --subdivide 2 --geomorph --json")["meshes"][0].clone();
+    let number = |value: &Value| value.as_f64().expect("a number");
+    for pair in mesh["levels"].as_array().expect("levels").windows(2) {
+        let morph = &pair[0]["geomorph"];
+        let apart = number(&pair[0]["hausdorff"]) + number(&pair[1]["hausdorff"]);
+        assert!(morph["exact"] == false && number(&morph["max"]) > 0.0 && number(&morph["max"]) <= apart);
+    }
+}
+
+#[test]
+fn impostors_stand_as_they_are_told() {
+    let room = workshop();
+    room.put(
+        "mast.obj",
+        CAGE.replace("v 0 0 1", "v 0 0 5")
+            .replace("v 1 0 1", "v 1 0 5")
+            .replace("v 1 1 1", "v 1 1 5")
+            .replace("v 0 1 1", "v 0 1 5"),
+    );
+    for (axis, up) in [("x", [1.0, 0.0, 0.0]), ("y", [0.0, 1.0, 0.0]), ("z", [0.0, 0.0, 1.0])] {
+        let options = format!("--impostor billboard --impostor-up {axis} --subdivide 1 --out {axis}");
+        let mesh = room.json(&format!("bake mast.obj {options} --json"))["meshes"][0].clone();
+        let Some(file) = mesh["impostor"]["file"].as_str() else { panic!("{}", mesh["impostor"]) };
+        let impostor = Impostor::from_json(room.read(file).as_bytes(), file).expect("a layout");
+        assert_eq!(impostor.up.to_array(), up);
+        assert!(impostor.frames.iter().all(|frame| frame.up.to_array() == up));
+    }
+    room.refused("bake mast.obj --impostor billboard --impostor-up w", &["w", "--impostor-up"]);
+    room.refused("bake mast.obj --impostor-up z", &["--impostor"]);
+}
+
+#[test]
+fn hierarchies_and_impostors_are_inspected() {
+    let room = meadow();
+    let ball = lod_budget::bake::shapes::icosphere(3).into();
+    let forest = hierarchy::of(&ball, &GarlandHeckbert::default(), &mut quietly).expect("a good shape");
+    let bytes = hierarchy::to_bytes(&forest);
+    room.put("ball.lodh", &bytes);
+    let words = room.done("inspect ball.lodh");
+    let finest = format!("{} triangles, {} vertices", forest.triangles(), forest.leaves());
+    assert!(words.contains(&finest), "{words}");
+    let seen = room.json("inspect ball.lodh --json");
+    let number = |key: &str| seen[key].as_u64().unwrap_or_else(|| panic!("{key} of {seen}")) as usize;
+    assert_eq!((seen["kind"].as_str(), number("bytes")), (Some("hierarchy"), bytes.len()));
+    assert_eq!(number("operations"), forest.parts().operations.len());
+    assert_eq!(number("base_triangles"), forest.base_triangles());
+    // A forest of so many operations is no flatter than a full binary tree, and no deeper than a list.
+    assert!(
+        number("depth") >= number("operations").ilog2() as usize / 2
+            && number("depth") <= number("operations")
+    );
+    let errors: Vec<f64> =
+        seen["errors"].as_array().into_iter().flatten().filter_map(Value::as_f64).collect();
+    assert!(errors.len() == 3 && errors.is_sorted(), "{errors:?}");
+
+    room.done("bake field.obj --levels 3 --impostor octahedral");
+    let words = room.done("inspect baked/field/field.impostor.json");
+    assert!(words.contains("octahedral") && words.contains("81 frames"), "{words}");
+    let seen = room.json("inspect baked/field/field.impostor.json --json");
+    assert_eq!((seen["kind"].as_str(), seen["frames"].as_u64()), (Some("impostor"), Some(81)));
+
+    let cut = &bytes[..bytes.len() - 1];
+    room.put("cut.lodh", cut).put("none.lodh", "PNG and so on, more than a head");
+    room.refused("inspect cut.lodh", &[&format!("cut.lodh: byte {}: it is cut off", cut.len())]);
+    room.refused("inspect none.lodh", &["none.lodh: byte 0: it must start with LODH"]);
+    room.refused("inspect gone.lodh", &["gone.lodh", "cannot be read"]);
+    let text = room.read("baked/field/field.impostor.json");
+    room.put("wide.json", text.replacen("\"radius\": ", "\"radius\": -", 1));
+    room.refused("inspect wide.json", &["wide.json: radius: "]);
+}
+
 #[test]
 fn the_levels_are_those_that_were_asked_for() {
     let room = meadow();
     let bake = |options: &str| {
         room.json(&format!("bake field.obj --format json --json {options}"))["meshes"][0].clone()
     };
-    let triangles = |mesh: &Value| -> Vec<u64> {
-        mesh["levels"]
-            .as_array()
-            .into_iter()
-            .flatten()
-            .filter_map(|level| level["triangles"].as_u64())
-            .collect()
-    };
-    assert_eq!(triangles(&bake("--levels 1")), [128]);
-    assert_eq!(triangles(&bake("--ratios 0.5,0.125")), [128, 64, 16]);
-    assert_eq!(triangles(&bake("--triangles 100,90")), [128, 100, 90]);
+    assert_met(&triangles(&bake("--levels 1")), &[128]);
+    assert_met(&triangles(&bake("--ratios 0.5,0.125")), &[128, 64, 16]);
+    assert_met(&triangles(&bake("--triangles 100,90")), &[128, 100, 90]);
     let by_error = bake("--errors 2%,5%");
     let most = by_error["diagonal"].as_f64().expect("a diagonal") * 0.05;
     let levels = by_error["levels"].as_array().expect("levels");
@@ -715,9 +895,10 @@ fn the_levels_are_those_that_were_asked_for() {
     let placed = |placement: &str| bake(&format!("--levels 3 --topology free --placement {placement}"));
     assert_ne!(placed("midpoint")["levels"], placed("endpoint")["levels"]);
     let vista = bake("--preset vista --accuracy triangles");
-    assert_eq!((vista["preset"].as_str(), &triangles(&vista)[..2]), (Some("vista"), &[128, 32][..]));
+    let counts = triangles(&vista);
+    assert_met(&counts[..2], &[128, 32]);
     let accuracy = vista["levels"][1]["accuracy"].as_f64().expect("an accuracy");
-    assert!((accuracy - (1.0 - 0.5 / 32.0)).abs() < 1e-6);
+    assert!(vista["preset"] == "vista" && (accuracy - (1.0 - 0.5 / counts[1] as f64)).abs() < 1e-6);
 }
 
 #[test]
@@ -905,9 +1086,11 @@ fn a_baked_table_is_inspected_and_compared() {
     let room = meadow();
     room.done("bake field.obj --levels 3");
     let words = room.done("inspect baked/field/field.json");
-    assert!(words.contains("3 levels") && words.contains("level 2: 32 triangles"), "{words}");
     let inspected = room.json("inspect baked/field/field.json --json");
-    assert_eq!(inspected["library"][0]["levels"].as_array().map(Vec::len), Some(3));
+    let counts = triangles(&inspected["library"][0]);
+    assert_met(&counts, &[128, 64, 32]);
+    assert!(words.contains("3 levels"), "{words}");
+    assert!(words.contains(&format!("level 2: {} triangles", counts[2])), "{words}");
     room.put("walk.csv", PATH);
     let compared = room.json("compare baked/field/field.glb --path walk.csv --policies static,finest --json");
     assert_eq!(compared["policies"].as_array().map(Vec::len), Some(2));

@@ -240,8 +240,10 @@ fn it_ends_where_it_is_close_enough_or_large_enough() {
     assert!(f64::from(tight.levels[1].error) > 0.002 * 3f64.sqrt());
     let small = baked(&cube(), &Upward { levels: 6, most_triangles: 200, ..Upward::default() });
     assert_eq!(small.levels[0].triangles(), 192);
-    let smallest = baked(&cube(), &Upward { levels: 6, most_triangles: 0, ..Upward::default() });
-    assert_eq!(smallest.levels[0].triangles(), 48);
+    let smallest = |most_triangles| Upward { levels: 6, most_triangles, ..Upward::default() };
+    assert_eq!(baked(&cube(), &smallest(48)).levels[0].triangles(), 48);
+    let refused = smallest(47).bake(&cube(), &mut quietly).expect_err("too many");
+    assert_eq!(refused, SubdivideError::TooMany { triangles: 48, most: 47 });
 }
 
 #[test]

@@ -111,8 +111,8 @@ fn head(bytes: &[u8]) -> Result<[u32; 4], (usize, String)> {
 
 /// How long a file is.
 fn length(counts: [u32; 4]) -> Option<usize> {
-    let columns = counts.iter().zip(ROWS).map(|(&n, row)| (n as usize).checked_mul(row));
-    columns.fold(Some(HEAD + CHECKSUM), |sum, column| sum?.checked_add(column?))
+    let mut columns = counts.iter().zip(ROWS).map(|(&n, row)| (n as usize).checked_mul(row));
+    columns.try_fold(HEAD + CHECKSUM, |sum, column| sum.checked_add(column?))
 }
 
 /// Where what is wrong begins.

@@ -41,8 +41,8 @@ impl fmt::Display for NotJoined {
 
 impl Impostor {
     /// The table of a chain with the impostor as its last level: one draw call; vertices of 32 bytes and indices of two,
-    /// and the atlas; the larger of its own and all errors before; accuracy as the chain's levels have it, from
-    /// [`Impostor::rms`] or [`Impostor::error`], and never above theirs. `min_size` of the level before is where the
+    /// and the atlas; the larger of all errors before and its own, to which level 0's is added where that has one;
+    /// accuracy as the chain's levels have it, from [`Impostor::rms`] or that error, and never above theirs. `min_size` of the level before is where the
     /// impostor's error is a pixel.
     ///
     /// # Errors
@@ -50,7 +50,7 @@ impl Impostor {
     pub fn join(&self, chain: &Chain, accuracy: Accuracy) -> Result<Joined, TableError> {
         let table = chain.table(accuracy)?;
         let levels = table.levels();
-        let record = self.record(&table, accuracy);
+        let record = self.record(&table, self.error_in(chain), accuracy);
         let more_accurate = levels.iter().take_while(|level| level.accuracy > record.accuracy).count();
         let kept = more_accurate.max(1);
         let left_out = not_joined(&levels[..kept], &record);
@@ -61,13 +61,19 @@ impl Impostor {
         Ok(Joined { table, kept, left_out })
     }
 
+    /// How far off it is where level 0 of its chain is itself so far from what is meant, as levels by subdivision are
+    /// from the limit surface: [`Impostor::error`] is from level 0.
+    pub fn error_in(&self, chain: &Chain) -> f64 {
+        self.error + chain.levels[0].deviation.hausdorff
+    }
+
     /// Its level by itself.
-    fn record(&self, table: &LodTable, accuracy: Accuracy) -> LevelRecord {
+    fn record(&self, table: &LodTable, error: f64, accuracy: Accuracy) -> LevelRecord {
         let (triangles, vertices) = self.counts();
         let radius = f64::from(table.bounds().radius);
         let loss = match accuracy {
             Accuracy::Rms => 2.0 * self.rms / radius,
-            Accuracy::Hausdorff => self.error / radius,
+            Accuracy::Hausdorff => error / radius,
             Accuracy::Triangles => 1.0 - f64::from(accuracy_of(triangles)),
         };
         LevelRecord {
@@ -75,7 +81,7 @@ impl Impostor {
             vertices,
             draws: 1,
             bytes: self.atlas.bytes + 32 * u64::from(vertices) + 6 * u64::from(triangles),
-            error: Some(rounded_up(self.error)),
+            error: Some(rounded_up(error)),
             accuracy: (1.0 - loss).clamp(0.0, 1.0) as f32,
             min_size: Some(0.0),
         }

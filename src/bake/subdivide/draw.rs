@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3, Vec4};
 
 use super::level::{Level, Limits, Stack};
+use super::normals::Sides;
 use super::{ControlMesh, Placement, SubdivideError};
 use crate::bake::mesh::{Group, Mesh};
 use crate::bake::read::triangulate::{TooConcave, Triangulator};
@@ -19,7 +20,15 @@ pub(super) fn meshes(
         Placement::Limit => Some(stack.limits()),
         Placement::Subdivision => None,
     };
-    stack.levels.iter().rev().map(|level| mesh(control, level, limits.as_ref())).collect()
+    let mut sides = stack.sides();
+    let mut meshes = Vec::with_capacity(stack.levels.len());
+    for level in stack.levels.iter().rev() {
+        if !meshes.is_empty() {
+            sides.coarsen(stack.scheme);
+        }
+        meshes.push(mesh(control, level, limits.as_ref(), &sides)?);
+    }
+    Ok(meshes)
 }
 
 /// A level as it is drawn: its vertices at the limits where those are given.
@@ -27,11 +36,14 @@ pub(super) fn mesh(
     control: &ControlMesh,
     level: &Level,
     limits: Option<&Limits>,
+    sides: &Sides,
 ) -> Result<Mesh, SubdivideError> {
-    let (wedge_of, firsts) = wedges(level);
+    let (wedge_of, firsts) = wedges(level, sides);
     let mut mesh = Mesh { name: control.name.clone(), ..Mesh::default() };
     mesh.positions = places(level, limits);
     mesh.wedges = firsts.iter().map(|&corner| level.net.corners[corner as usize]).collect();
+    mesh.normals =
+        firsts.iter().map(|&corner| sides.normals[sides.of_corner[corner as usize] as usize]).collect();
     fill_columns(control, level, limits, &firsts, &mut mesh);
     cut_faces(control, level, &wedge_of, &mut mesh)?;
     drop_isolated(&mut mesh);
@@ -44,9 +56,10 @@ pub(super) fn places(level: &Level, limits: Option<&Limits>) -> Vec<Vec3> {
     values[..level.positions.len()].iter().map(|p| p.as_vec3()).collect()
 }
 
-/// Per corner its wedge, and per wedge its first corner: corners with the same position and attributes are one.
-fn wedges(level: &Level) -> (Vec<u32>, Vec<u32>) {
-    let mut alike = classes(level.net.corners.iter().map(|&vertex| [vertex, 0, 0]));
+/// Per corner its wedge, and per wedge its first corner: corners on one side of a vertex with the same attributes are
+/// one.
+fn wedges(level: &Level, sides: &Sides) -> (Vec<u32>, Vec<u32>) {
+    let mut alike = classes(sides.of_corner.iter().map(|&side| [side, 0, 0]));
     for channel in &level.channels {
         alike =
             classes(alike.of.iter().zip(&channel.net.corners).map(|(&class, &vertex)| [class, vertex, 0]));

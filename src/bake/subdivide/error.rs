@@ -22,6 +22,13 @@ pub enum SubdivideError {
         /// The level that would, counted from the control mesh.
         level: usize,
     },
+    /// The first subdivision would have more triangles than [`Upward`](super::Upward) may make.
+    TooMany {
+        /// As many as it would have.
+        triangles: usize,
+        /// As many as it may.
+        most: usize,
+    },
     /// A concave face of the control mesh has too many corners to be cut into triangles.
     TooConcave {
         /// Which.
@@ -42,6 +49,9 @@ impl fmt::Display for SubdivideError {
             }
             Self::TooLarge { level } => {
                 write!(f, "subdivision {level} must have at most {} corners of faces", super::MOST_CORNERS)
+            }
+            Self::TooMany { triangles, most } => {
+                write!(f, "subdivided once it must have at most {most} triangles, and has {triangles}")
             }
             Self::TooConcave { face } => {
                 write!(f, "face {face}: it is concave and has too many corners to be cut into triangles")

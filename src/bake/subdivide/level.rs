@@ -6,6 +6,7 @@ use glam::{DVec3, DVec4};
 
 use super::limits::limits;
 use super::net::Net;
+use super::normals::Sides;
 use super::{ControlMesh, FOREVER_SHARP, MOST_CORNERS, Scheme, SubdivideError};
 use crate::bake::weld::classes;
 
@@ -171,11 +172,27 @@ impl Stack {
         Ok(())
     }
 
+    /// The sides of the finest level's vertices.
+    pub fn sides(&self) -> Sides {
+        let level = self.finest();
+        if !self.has_polygons() {
+            return Sides::of(level, self.scheme);
+        }
+        let mut sides = Sides::of(&level.refined(self.scheme), self.scheme);
+        sides.coarsen(self.scheme);
+        sides
+    }
+
+    /// Whether the finest level has faces that masks do not know.
+    fn has_polygons(&self) -> bool {
+        let net = &self.finest().net;
+        self.scheme == Scheme::CatmullClark && net.corners.len() != 4 * net.face_count()
+    }
+
     /// Where the vertices of the finest level end, those of all coarser ones being the first of them.
     pub fn limits(&self) -> Limits {
         let level = self.finest();
-        let has_polygons = level.net.corners.len() != 4 * level.net.face_count();
-        match has_polygons && self.scheme == Scheme::CatmullClark {
+        match self.has_polygons() {
             true => Limits::of(&level.refined(self.scheme), self.scheme),
             false => Limits::of(level, self.scheme),
         }

@@ -29,19 +29,22 @@ fn followed<T: Value>(scheme: Scheme, mut net: Net, mut values: Vec<T>) -> T {
         if !unmasked(&net)[0] {
             return scheme.limit_masks(&net, &values)[0];
         }
-        values = scheme.points(&net, &values);
-        net = scheme.refine(&net);
-        let faces: Vec<u32> =
-            (0..net.face_count() as u32).filter(|&face| net.face(face as usize).contains(&0)).collect();
-        let (star, old) = star(&net, 0, &faces);
-        values = old.iter().map(|&vertex| values[vertex as usize]).collect();
-        net = star;
+        (net, values) = closer(scheme, &net, &values);
     }
     values[0]
 }
 
+/// The star of vertex 0 after one more subdivision, its faces in the order of those they come from.
+pub(super) fn closer<T: Value>(scheme: Scheme, net: &Net, values: &[T]) -> (Net, Vec<T>) {
+    let (net, values) = (scheme.refine(net), scheme.points(net, values));
+    let faces: Vec<u32> =
+        (0..net.face_count() as u32).filter(|&face| net.face(face as usize).contains(&0)).collect();
+    let (star, old) = star(&net, 0, &faces);
+    (star, old.iter().map(|&vertex| values[vertex as usize]).collect())
+}
+
 /// Per vertex, whether masks do not say where it ends.
-fn unmasked(net: &Net) -> Vec<bool> {
+pub(super) fn unmasked(net: &Net) -> Vec<bool> {
     let rules = net.rules(f32::MAX);
     let fades = |sharpness: f32| sharpness > 0.0 && sharpness.is_finite();
     let mut open: Vec<bool> = net.sharpness.iter().map(|&sharpness| fades(sharpness)).collect();
@@ -66,7 +69,7 @@ fn faces_at(net: &Net, marked: &[bool]) -> Vec<(u32, Vec<u32>)> {
 }
 
 /// The net of a vertex's faces, in which it is vertex 0, and which vertices of the old net the others are.
-fn star(net: &Net, vertex: u32, faces: &[u32]) -> (Net, Vec<u32>) {
+pub(super) fn star(net: &Net, vertex: u32, faces: &[u32]) -> (Net, Vec<u32>) {
     let spans = || faces.iter().map(|&face| net.span(face as usize));
     let mut others: Vec<u32> =
         spans().flatten().map(|corner| net.corners[corner]).filter(|&v| v != vertex).collect();

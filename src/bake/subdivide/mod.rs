@@ -24,6 +24,8 @@
 //! - **Texture coordinates and colours** are smoothed as positions are, so that a texture does not swim; along the
 //!   borders of charts they are linear, so that charts keep their outlines and no texel of another chart shows. Where
 //!   a crease runs through a chart, they follow it.
+//! - **Normals** are those of the limit surface, at every level. What is sharp for ever is a hard edge, and has a normal on
+//!   each side.
 //!
 //! Levels show the surface itself: their vertices lie where they end in the limit ([`Placement::Limit`]). With those of
 //! the subdivision every level would be a larger or smaller object than the next, and off by a multiple. Vertices keep
@@ -50,14 +52,17 @@ mod catmull_clark;
 mod control;
 mod draw;
 mod error;
+mod fan;
 mod level;
 mod limits;
 mod load;
 mod loops;
 mod net;
+mod normals;
 mod remainder;
 mod scheme;
 mod sharpen;
+mod tangents;
 #[cfg(test)]
 mod tests;
 mod upward;

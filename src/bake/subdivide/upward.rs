@@ -22,7 +22,7 @@ pub struct Upward {
     pub levels: usize,
     /// The first level that is as close to the limit surface is the finest; `None` not to look.
     pub error: Option<Length>,
-    /// No level but the first subdivision has more triangles.
+    /// No level has more triangles. A mesh whose first subdivision would is refused.
     pub most_triangles: usize,
     /// How closely coarser levels are measured against the finest.
     pub measure: deviation::Options,
@@ -54,7 +54,8 @@ impl Upward {
     /// distance if the limit surface is nearer by as much. Root mean squares are from level 0.
     ///
     /// # Errors
-    /// As [`ControlMesh::subdivided`]; a mesh without a face or without extent; [`BakeError::Cancelled`].
+    /// As [`ControlMesh::subdivided`]; a mesh without a face or without extent; one whose first subdivision has more
+    /// triangles than it may, before anything is allocated for it; [`BakeError::Cancelled`].
     pub fn bake(
         &self,
         mesh: &ControlMesh,
@@ -91,7 +92,9 @@ impl Upward {
 
     /// The levels, and how far the finest is from the limit surface.
     fn subdivided(&self, mesh: &ControlMesh) -> Result<(Stack, f64), SubdivideError> {
-        let mut stack = Stack::of_control(mesh, self.scheme.unwrap_or(Scheme::of(mesh)))?;
+        let scheme = self.scheme.unwrap_or(Scheme::of(mesh));
+        self.check_first(mesh, scheme)?;
+        let mut stack = Stack::of_control(mesh, scheme)?;
         stack.add()?;
         let close_enough = self.error.map(|error| error.units(diagonal(mesh)));
         while self.has_next(&stack) {
@@ -102,6 +105,15 @@ impl Upward {
         }
         let apart = self.distance(&stack);
         Ok((stack, apart))
+    }
+
+    fn check_first(&self, mesh: &ControlMesh, scheme: Scheme) -> Result<(), SubdivideError> {
+        let triangles = match scheme {
+            Scheme::Loop => 4 * mesh.ends.len(),
+            Scheme::CatmullClark => 2 * mesh.corners.len(),
+        };
+        let most = self.most_triangles;
+        if triangles <= most { Ok(()) } else { Err(SubdivideError::TooMany { triangles, most }) }
     }
 
     fn has_next(&self, stack: &Stack) -> bool {

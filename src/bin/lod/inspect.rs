@@ -1,5 +1,8 @@
 //! `lod inspect`: what is in a file, and what is odd about it.
 
+mod baked;
+mod progressive;
+
 use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
@@ -9,12 +12,12 @@ use lod_budget::files::{Break, BreakKind, Inspection, inspect};
 use lod_budget::table::LevelRecord;
 use serde::Serialize;
 
-use crate::inspect_progressive::{self, CountsRow, ProgressiveInspection};
 use crate::text::{count, counted, plain};
 
-/// Say what is in a scene, a camera path, a knapsack instance or a progressive mesh, and what is odd about it.
+/// Say what is in a file, and what is odd about it.
 ///
-/// Scenes are .json, .glb and .gltf files, paths .csv, .tum and .txt, instances .json, progressive meshes .lodp.
+/// Scenes are .json, .glb and .gltf files, paths .csv, .tum and .txt, knapsack instances and impostors .json, progressive
+/// meshes .lodp, vertex hierarchies .lodh.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
@@ -39,9 +42,11 @@ struct Inspected<'a, I> {
 }
 
 pub fn run(args: &Args, out: &mut dyn Write) -> anyhow::Result<()> {
-    if args.file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("lodp")) {
-        let inspection = &inspect_progressive::inspect(&args.file)?;
-        return say(args, inspection, progressive_in_words, out);
+    if let Some(baked) = baked::inspect(&args.file)? {
+        return baked::print(&baked, args, out);
+    }
+    if let Some(progressive) = progressive::inspect(&args.file)? {
+        return say(args, &progressive, progressive::in_words, out);
     }
     say(args, &inspect(&args.file)?, in_words, out)
 }
@@ -69,30 +74,6 @@ fn in_words(inspection: &Inspection) -> String {
         Inspection::Path(path) => path_in_words(path),
         Inspection::Instance(instance) => instance_in_words(instance),
     }
-}
-
-fn progressive_in_words(p: &ProgressiveInspection) -> String {
-    let mut lines = Lines::default();
-    let bytes = |n: usize| count(n as u64);
-    let counts = |c: &CountsRow| {
-        let [positions, wedges, triangles] = [c.positions, c.wedges, c.triangles].map(|n| count(n as u64));
-        format!("{triangles} triangles, {positions} positions, {wedges} wedges")
-    };
-    lines.say("Mesh", plain(&p.name));
-    lines.say("Base", counts(&p.base));
-    lines.say("Splits", format!("{}, to {}", count(p.splits as u64), counts(&p.full)));
-    lines.say("Original", counts(&p.original));
-    let parts = [("base", p.base_bytes), ("splits", p.split_bytes), ("original", p.original_bytes)];
-    let parts = parts.map(|(name, n)| format!("{name} {}", bytes(n))).join(", ");
-    let each = p.bytes as f64 / p.original.triangles.max(1) as f64;
-    lines.say("Bytes", format!("{}, {each:.2} a triangle: {parts}", bytes(p.bytes)));
-    for mark in &p.marks {
-        lines.say("Error", format!("{} at {} triangles", mark.error, count(mark.triangles as u64)));
-    }
-    if p.is_truncated {
-        lines.say("Odd", "it ends too early: what is whole can be used, but not the original");
-    }
-    lines.0
 }
 
 /// Lines of a name and what there is to say.

@@ -5,7 +5,6 @@ mod bake;
 mod compare;
 mod generate;
 mod inspect;
-mod inspect_progressive;
 mod solve;
 mod text;
 
@@ -36,7 +35,7 @@ Exit status: 0 done, 1 a check failed, 2 bad input or usage.";
 #[derive(Subcommand)]
 enum Command {
     Compare(Box<compare::Args>),
-    Bake(bake::Args),
+    Bake(Box<bake::Args>),
     Inspect(inspect::Args),
     Solve(solve::Args),
     Generate(generate::Args),

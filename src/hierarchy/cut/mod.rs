@@ -316,11 +316,12 @@ impl Cut {
         around.push(node);
         around.extend(self.front.neighbours(node));
         for node in around.drain(..) {
-            if let Some(parent) = self.hierarchy.parent(node) {
-                if self.merges.key(parent).is_none() && self.front.may_merge(&self.hierarchy, parent) {
-                    let priority = self.look_at(parent);
-                    self.merges.set(parent, u64::from(priority.to_bits()));
-                }
+            if let Some(parent) = self.hierarchy.parent(node)
+                && self.merges.key(parent).is_none()
+                && self.front.may_merge(&self.hierarchy, parent)
+            {
+                let priority = self.look_at(parent);
+                self.merges.set(parent, u64::from(priority.to_bits()));
             }
         }
         self.waiting = around;

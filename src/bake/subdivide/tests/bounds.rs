@@ -65,7 +65,8 @@ fn limit_points_are_within_the_bound_of_a_level() {
         let stack = Stack::new(&mesh, scheme, 1).expect("a mesh");
         let limits = stack.limits();
         let bound = limit_distance(stack.finest(), scheme, &draw::places(stack.finest(), Some(&limits)));
-        let drawn = draw::mesh(&mesh, stack.finest(), Some(&limits)).expect("a mesh").surface();
+        let drawn =
+            draw::mesh(&mesh, stack.finest(), Some(&limits), &stack.sides()).expect("a mesh").surface();
         let triangles: Vec<[DVec3; 3]> =
             (0..drawn.triangles.len()).map(|t| drawn.corners(t).map(|p| p.as_dvec3())).collect();
         let ends = Stack::new(&mesh, scheme, 2).expect("a mesh").limits().positions;

@@ -2,6 +2,7 @@
 
 mod bounds;
 mod masks;
+mod normals;
 mod shapes;
 mod splines;
 mod twin;

@@ -85,6 +85,8 @@ impl ImpostorKind {
 /// The last level, to be written.
 pub struct Card {
     pub impostor: Impostor,
+    /// In its chain.
+    error: f64,
     quads: Mesh,
     /// As a contact sheet sees it.
     seen: Mesh,
@@ -122,6 +124,7 @@ pub fn end_with(
     let finest = &chain.levels[0].mesh;
     let impostor = options.bake(finest)?;
     let seen = impostor.seen(finest, sheet::direction(finest));
+    let error = impostor.error_in(chain);
     let Joined { table, kept, left_out } = impostor.join(chain, accuracy)?;
     let levels_left_out = chain.levels.len() - kept;
     chain.levels.truncate(kept);
@@ -131,14 +134,14 @@ pub fn end_with(
         texels_per_unit: impostor.atlas.texels_per_unit,
         nearest: impostor.validity.nearest,
         elevation_deg: impostor.validity.elevation_deg,
-        error: impostor.error,
+        error,
         rms: impostor.rms,
         fill: impostor.fill,
         levels_left_out,
         left_out: left_out.map(|reason| reason.to_string()),
         file: None,
     };
-    let card = left_out.is_none().then(|| Card { quads: impostor.mesh(), seen, impostor });
+    let card = left_out.is_none().then(|| Card { error, quads: impostor.mesh(), seen, impostor });
     Ok((table, card, row))
 }
 
@@ -147,7 +150,7 @@ impl Card {
         // Every level of a table that was joined has an error.
         let error = record.error.unwrap_or(f32::MAX);
         LevelOut {
-            measured: Some(Measured { error, hausdorff: self.impostor.error, rms: self.impostor.rms }),
+            measured: Some(Measured { error, hausdorff: self.error, rms: self.impostor.rms }),
             coverage: record.min_size.map(coverage_of_size),
             accuracy: Some(record.accuracy),
             impostor: Some(&self.impostor),
@@ -166,10 +169,10 @@ impl Card {
             vertices: record.vertices as usize,
             draws: record.draws as usize,
             bytes: record.bytes,
-            hausdorff: self.impostor.error,
+            hausdorff: self.error,
             attained: 0.0,
             rms: self.impostor.rms,
-            error: record.error.map_or(self.impostor.error, f64::from),
+            error: record.error.map_or(self.error, f64::from),
             accuracy: record.accuracy,
             min_size: record.min_size,
             appearance: None,

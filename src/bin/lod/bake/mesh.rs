@@ -70,7 +70,8 @@ fn subdivided(
     let of_input = || input.file.display().to_string();
     let file = subdivision.read(input).map_err(|e| anyhow!("{e}"))?;
     let bake = |progress: &mut Asked<'_>| subdivision.bake(&file, progress);
-    let (row, outputs) = timed(&input.name, bake, settings, tell).with_context(of_input)?;
+    let (mut row, mut outputs) = timed(&input.name, bake, settings, tell).with_context(of_input)?;
+    outputs.end_with_impostor(&mut row, settings).with_context(of_input)?;
     let (method, findings) = (subdivision.method(&file), subdivide::findings(&file.findings));
     Ok((MeshRow { input: of_input(), method, findings, ..row }, outputs))
 }
@@ -85,7 +86,7 @@ pub fn timed<E: Error + Send + Sync + 'static>(
     settings: &Settings,
     tell: &mut Tell<'_>,
 ) -> anyhow::Result<(MeshRow, Outputs)> {
-    let mut clock = Clock::new();
+    let mut clock = Clock::new(settings.subdivide.is_some());
     let mut progress = |at| {
         tell(clock.tick(at));
         ControlFlow::Continue(())
@@ -100,7 +101,7 @@ pub fn timed<E: Error + Send + Sync + 'static>(
         status: Status::Baked,
         method: settings.method.to_owned(),
         preset: settings.preset.map(str::to_owned),
-        seconds: clock.simplifying.as_secs_f64(),
+        seconds: clock.making.as_secs_f64(),
         measure_seconds: clock.measuring.as_secs_f64(),
         diagonal: diagonal(&chain),
         unreferenced: chain.unreferenced,
@@ -142,25 +143,25 @@ fn write(
     Ok(record.row)
 }
 
-/// How long simplifying and measuring take: the time between two reports belongs to what the first one said.
+/// How long making levels and measuring them takes: the time between two reports belongs to what the first one said.
 struct Clock {
     since: Instant,
-    is_simplifying: bool,
-    simplifying: Duration,
+    is_making: bool,
+    making: Duration,
     measuring: Duration,
 }
 
 impl Clock {
-    /// Getting ready to measure comes first.
-    fn new() -> Self {
-        let (simplifying, measuring) = (Duration::ZERO, Duration::ZERO);
-        Self { since: Instant::now(), is_simplifying: false, simplifying, measuring }
+    /// What comes before the first report is subdivision, or getting ready to measure.
+    fn new(is_making: bool) -> Self {
+        let (making, measuring) = (Duration::ZERO, Duration::ZERO);
+        Self { since: Instant::now(), is_making, making, measuring }
     }
 
     /// Takes the time, and returns how much is done, from 0 to 1.
     fn tick(&mut self, at: Progress) -> f64 {
         self.stop();
-        self.is_simplifying = matches!(at, Progress::Simplifying(_));
+        self.is_making = matches!(at, Progress::Simplifying(_));
         let share = |part: usize, whole: usize| part as f64 / whole.max(1) as f64;
         match at {
             Progress::Simplifying(at) => {
@@ -172,7 +173,7 @@ impl Clock {
 
     fn stop(&mut self) {
         let now = Instant::now();
-        let sum = if self.is_simplifying { &mut self.simplifying } else { &mut self.measuring };
+        let sum = if self.is_making { &mut self.making } else { &mut self.measuring };
         *sum += now - self.since;
         self.since = now;
     }

@@ -29,7 +29,7 @@ pub struct SubdivideArgs {
     /// Subdivide no further once a level is this close to the limit surface, in object units or percent of the diagonal
     #[arg(long, value_name = "ERROR", requires = "subdivide", value_parser = length)]
     within: Option<Length>,
-    /// Subdivide no further where this would make more triangles than this [default: 524288]
+    /// Subdivide no further where this would make more triangles; refuse what it would after once [default: 524288]
     #[arg(long, value_name = "TRIANGLES", requires = "subdivide")]
     most_triangles: Option<usize>,
 }
@@ -55,7 +55,7 @@ impl SubdivideArgs {
             error: self.within,
             most_triangles: self.most_triangles.unwrap_or(default.most_triangles),
             measure: plan.measure,
-            look: plan.look.clone(),
+            look: plan.look,
             ..default
         };
         plan.check()?;

@@ -92,10 +92,10 @@ fn notes(meshes: &[MeshRow]) -> Vec<String> {
         let baked = meshes.iter().filter(|mesh| mesh.status == Status::Baked);
         significant(baked.map(time).fold(0.0, |sum, time| sum + time), 3)
     };
-    let (simplify, measure) = (seconds(|mesh| mesh.seconds), seconds(|mesh| mesh.measure_seconds));
+    let (make, measure) = (seconds(|mesh| mesh.seconds), seconds(|mesh| mesh.measure_seconds));
     let baked = counted(meshes.len() - kept, "mesh").replace("meshs", "meshes");
     let kept = if kept > 0 { format!("; {kept} kept as baked before") } else { String::new() };
-    notes.push(format!("{baked} baked: {simplify} s to simplify, {measure} s to measure{kept}."));
+    notes.push(format!("{baked} baked: {make} s to make, {measure} s to measure{kept}."));
     notes.extend(meshes.iter().filter_map(|mesh| mesh.scene_file.clone().or(mesh.table_file.clone())));
     notes.dedup();
     notes
