@@ -18,9 +18,15 @@ use crate::world::{Sort, TERRAIN, World};
 pub enum Offer {
     /// The table of the file, the same from everywhere.
     Fixed,
-    /// What the cut is worth to the camera of the frame before.
+    /// What a cut is worth to the camera, from a second one that always has the same share of the triangles.
+    ///
+    /// The offer of the cut that is steered would feed back: once it is coarse it is off by so much that no size is
+    /// worth its triangles, and it stays coarse.
     EveryFrame,
 }
+
+/// The share of all triangles at which offers are made.
+const PROBED: f64 = 1.0 / 16.0;
 
 /// What a frame came to.
 #[derive(Clone, Debug, Default)]
@@ -57,12 +63,15 @@ pub fn drive(
     let mut runtime = Runtime::new(RuntimeOptions::default(), Box::new(Predictive::default()))?;
     let mut objects = world.scene.to_objects()?;
     let mut cut = Cut::new(world.hierarchy.clone());
+    let mut probe = cut.clone();
+    let probed = Budget::triangles((PROBED * world.hierarchy.triangles() as f64) as usize);
     let table = &world.scene.tables[usize::from(TERRAIN.0)];
     let (mut rows, mut times) = (Vec::<Row>::new(), Vec::new());
     for (k, noise) in (0..camera.frames(&world.path)).zip(machine.noise()) {
         let view = camera.view(&world.path.sample(k as f64 / camera.fps));
         if offer == Offer::EveryFrame {
-            objects.replace_table(TERRAIN, cut.offer(table)?)?;
+            probe.update(&[view], &probed);
+            objects.replace_table(TERRAIN, probe.offer(table)?)?;
         }
         let measured = k.checked_sub(machine.latency()).and_then(|k| times.get(k..=k)).unwrap_or_default();
         let views = [ViewInput::new(view, 0)];

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Bakes everything, writes the scene and a camera path to FOLDER, and runs the path, with the table of the terrain as
-//! in the file and with one that the cut offers anew in every frame. To the selection the terrain is an object with a
+//! in the file and with one that a cut offers anew in every frame. To the selection the terrain is an object with a
 //! table of some fifty levels; the triangles of the level that it chooses are the budget of the cut. CELLS is how many the
 //! terrain has on a side (512 for 524 288 triangles). Prints Markdown, a line per second.
 
