@@ -9,7 +9,7 @@ use lod_budget::bake::chain::{Accuracy, Plan};
 use lod_budget::bake::impostor::{Kind, Options};
 use lod_budget::bake::simplify::{GarlandHeckbert, quietly};
 use lod_budget::bake::{Mesh, Surface, chain, hierarchy, shapes};
-use lod_budget::check::{self, Promise, Replay};
+use lod_budget::check::{Promise, Replay};
 use lod_budget::frame::GroupId;
 use lod_budget::hierarchy::{Budget, Cut, Hierarchy};
 use lod_budget::runtime::{FrameInput, Runtime, RuntimeOptions, ViewInput};
