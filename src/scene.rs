@@ -259,6 +259,7 @@ pub struct Objects {
     broken_bounds: usize,
     revision: u64,
     layout_revision: u64,
+    tables_revision: u64,
     block_revisions: Vec<u64>,
     block_layout_revisions: Vec<u64>,
     /// Where objects wait while their slots are written anew; empty between calls.
@@ -314,8 +315,26 @@ impl Objects {
         let id = u16::try_from(self.tables.len());
         let id = id.map_err(|_| ObjectError { id: None, rule: "there can be at most 65536 tables" })?;
         self.tables.push(table);
-        self.revision += 1;
+        self.touch_tables();
         Ok(TableId(id))
+    }
+
+    /// Puts another table in the place of one, for all objects that have it: what its levels cost, how true they are, or
+    /// both have changed, as those of a cut do with the camera ([`Cut::offer`](crate::hierarchy::Cut::offer)). Levels
+    /// keep their numbers, so what is shown and remembered stays. Bounds of objects are not touched. The next frame prices
+    /// all tables anew, in O(levels).
+    ///
+    /// # Errors
+    /// An unknown table, and one of another number of levels: that is a new table, for [`Objects::set_table`].
+    pub fn replace_table(&mut self, id: TableId, table: LodTable) -> Result<(), ObjectError> {
+        let refused = |rule| ObjectError { id: None, rule };
+        let old = self.tables.get_mut(usize::from(id.0)).ok_or(refused("the table to replace is unknown"))?;
+        if old.levels().len() != table.levels().len() {
+            return Err(refused("a table must have as many levels as the one that it replaces"));
+        }
+        *old = table;
+        self.touch_tables();
+        Ok(())
     }
 
     /// All tables, by [`TableId`].
@@ -443,6 +462,11 @@ impl Objects {
         self.layout_revision
     }
 
+    /// The revision at which a table last came or was replaced.
+    pub fn tables_revision(&self) -> u64 {
+        self.tables_revision
+    }
+
     /// Per block, the revision at which it last changed.
     pub fn block_revisions(&self) -> &[u64] {
         &self.block_revisions
@@ -524,6 +548,11 @@ impl Objects {
 
     fn known_slot(&self, id: ObjectId) -> Result<usize, ObjectError> {
         self.slot_of(id).ok_or(ObjectError::of(id, "the id is unknown"))
+    }
+
+    fn touch_tables(&mut self) {
+        self.revision += 1;
+        self.tables_revision = self.revision;
     }
 
     fn touch(&mut self, slot: usize) {

@@ -122,7 +122,7 @@ pub struct Runtime {
 /// What the rates were made from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Rated {
-    tables: usize,
+    tables_revision: u64,
     model_revision: u64,
 }
 
@@ -254,7 +254,8 @@ impl Runtime {
         self.changes.clear();
         self.clock_ms += elapsed_ms(input.dt_s);
         self.feedback.measure(input.measured);
-        let rated = Rated { tables: objects.tables().len(), model_revision: self.feedback.model_revision() };
+        let tables_revision = objects.tables_revision();
+        let rated = Rated { tables_revision, model_revision: self.feedback.model_revision() };
         if self.rated != Some(rated) {
             self.rates.renew(objects.tables(), self.feedback.model());
             self.tree.expect_slopes(self.rates.best_slopes());
