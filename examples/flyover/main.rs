@@ -14,6 +14,7 @@
 mod flight;
 mod growth;
 mod heights;
+mod land;
 mod plot;
 
 use std::error::Error;
@@ -24,7 +25,7 @@ use std::time::Instant;
 use flight::Flight;
 use heights::Heights;
 use lod_budget::bake::simplify::{GarlandHeckbert, Simplifier, Target, Task, quietly};
-use lod_budget::bake::{Mesh, Surface, hierarchy, read, shapes};
+use lod_budget::bake::{Mesh, Surface, hierarchy, read};
 use lod_budget::hierarchy::{Budget, Cut, Hierarchy};
 
 /// Frames of a flight, and how many pass between two measurements.
@@ -38,12 +39,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         return growth::show(at(1, "1024").parse()?, arguments.get(2).map(Path::new));
     }
     let mesh = terrain(&at(0, "1024"))?;
-    fly(&mesh, at(1, "20000").parse()?, arguments.get(2).map(Path::new))
+    fly(&mesh, at(1, "50000").parse()?, arguments.get(2).map(Path::new))
 }
 
 fn terrain(named: &str) -> Result<Mesh, Box<dyn Error>> {
     Ok(match named.parse() {
-        Ok(side) => shapes::terrain(side, 1).into(),
+        Ok(side) => land::land(side).into(),
         Err(_) => read::load(Path::new(named))?.mesh,
     })
 }

@@ -17,6 +17,9 @@ use sight::{Motion, Sight};
 use super::Hierarchy;
 use crate::view::{Lens, View};
 
+/// How many operations an update tries to make room for in vain.
+const TRIES: usize = 8;
+
 /// What a cut may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
@@ -83,9 +86,14 @@ pub struct Cut {
     /// The budget that the cut is settled for, as long as views stay.
     settled: Option<Budget>,
     report: Report,
-    /// Operations that wait for those above them, and those that were split for one.
+    /// Operations that wait for those above them, those that were split for one or gave room, and per operation whether it is
+    /// either: what a cascade needs must not make room for it.
     waiting: Vec<u32>,
     done: Vec<u32>,
+    is_held: Vec<bool>,
+    /// What there was no room for, as long as nothing has changed since.
+    refused: Vec<u32>,
+    around: Vec<u32>,
 }
 
 impl Cut {
@@ -104,6 +112,9 @@ impl Cut {
             report: Report::default(),
             waiting: Vec::new(),
             done: Vec::new(),
+            is_held: vec![false; operations],
+            refused: Vec::new(),
+            around: Vec::new(),
             hierarchy,
         };
         let is_root = |o: &u32| cut.front.is_active(cut.hierarchy.node(*o));
@@ -186,31 +197,35 @@ impl Cut {
         }
     }
 
-    /// Splits what is worst, and contracts what is mildest to make room for it. Returns whether it came to its end.
+    /// Splits what is worst, and contracts what is mildest to make room for it. Where there is none, what is next worst
+    /// may need less. Returns whether it came to its end.
     fn exchange(&mut self, budget: &Budget) -> bool {
         let enough = self.enough(budget);
-        while let Some((error, worst)) = self.worst() {
-            if error <= enough {
+        let mut aside = Vec::new();
+        let mut is_done = true;
+        while let Some((error, worst)) = self.worst().filter(|&(error, _)| error > enough) {
+            is_done = self.report.splits + self.report.merges < budget.changes;
+            if !is_done || aside.len() == TRIES {
                 break;
             }
-            if self.report.splits + self.report.merges >= budget.changes {
-                return false;
-            }
-            if self.split_all(worst, budget) {
-                continue;
-            }
-            // Room is not made by taking away what is to be split.
-            let above = self.hierarchy.parent(self.hierarchy.node(worst));
-            match self.mildest() {
-                Some((least, operation))
-                    if least * (1.0 + budget.hysteresis) < error && Some(operation) != above =>
-                {
-                    self.merge(operation);
+            if !self.split_all(worst, error / (1.0 + budget.hysteresis), budget) {
+                aside.extend(self.splits.remove(worst).map(|key| (key, worst)));
+                if self.triangles().len() >= budget.triangles {
+                    break;
                 }
-                _ => break,
             }
         }
-        true
+        self.put_back(&aside);
+        is_done
+    }
+
+    /// What was refused is still to be split, unless that or the contrary has come about.
+    fn put_back(&mut self, aside: &[(u64, u32)]) {
+        for &(key, operation) in aside {
+            if self.front.is_active(self.hierarchy.node(operation)) && self.splits.key(operation).is_none() {
+                self.splits.set(operation, key);
+            }
+        }
     }
 
     /// Contracts what is more than good enough. Returns whether it came to its end.
@@ -249,47 +264,86 @@ impl Cut {
         None
     }
 
-    /// Splits an operation after all that stand in its way, or leaves everything as it is when that is too much.
-    fn split_all(&mut self, operation: u32, budget: &Budget) -> bool {
+    /// Splits an operation after all that stand in its way, and makes room for them where it costs less than `mild`.
+    /// Takes back the splits when that is not enough.
+    fn split_all(&mut self, operation: u32, mild: f32, budget: &Budget) -> bool {
+        if self.refused.contains(&operation) && self.milder_than(mild).is_none() {
+            return false;
+        }
         let before = self.report;
-        self.waiting.push(operation);
+        let refused = std::mem::take(&mut self.refused);
+        self.hold(operation);
         while let Some(&next) = self.waiting.last() {
             let blocker = self.front.blocker(self.hierarchy.node(next));
             if let Some(blocker) = blocker.and_then(|node| self.hierarchy.maker(node)) {
-                self.waiting.push(blocker);
-            } else if self.triangles().len() + self.hierarchy.going(next).len() > budget.triangles {
-                self.take_back(before);
-                return false;
-            } else {
+                self.hold(blocker);
+            } else if self.triangles().len() + self.hierarchy.going(next).len() <= budget.triangles {
                 self.split(next);
-                self.done.push(next);
                 self.waiting.pop();
+                self.done.push(next);
+            } else if let Some(other) = self.milder_than(mild) {
+                self.merge(other);
+                self.done.push(other);
+            } else {
+                self.give_up(before);
+                self.refused = refused;
+                self.refused.push(operation);
+                return false;
             }
         }
-        self.report.forced += self.done.len() - 1;
-        self.done.clear();
+        self.report.forced += self.report.splits - before.splits - 1;
+        self.release();
+        // All others are below it, and can only be done after it.
+        self.await_merge(operation);
         true
     }
 
-    /// Does again what was split in vain.
-    fn take_back(&mut self, before: Report) {
-        self.waiting.clear();
-        while let Some(operation) = self.done.pop() {
-            self.merge(operation);
-        }
-        self.report = Report { evaluated: self.report.evaluated, ..before };
+    /// The operation that could be done at the least error, if that is less.
+    fn milder_than(&mut self, error: f32) -> Option<u32> {
+        self.mildest().filter(|&(least, _)| least < error).map(|(_, operation)| operation)
     }
 
-    fn split(&mut self, operation: u32) {
-        self.front.split(&self.hierarchy, operation);
-        self.report.splits += 1;
+    /// Has an operation wait to be split; what would contract its node must not come before.
+    fn hold(&mut self, operation: u32) {
+        self.waiting.push(operation);
+        self.is_held[operation as usize] = true;
         if let Some(parent) = self.hierarchy.parent(self.hierarchy.node(operation)) {
             self.drop(parent);
         }
-        // Its error is what it was, only that it is asked the other way round.
-        if let Some(key) = self.splits.remove(operation) {
-            self.merges.set(operation, u64::from(!key as u32));
+    }
+
+    fn release(&mut self) {
+        for operation in self.waiting.drain(..).chain(self.done.drain(..)) {
+            self.is_held[operation as usize] = false;
         }
+    }
+
+    /// Undoes what was done in vain, last things first.
+    fn give_up(&mut self, before: Report) {
+        let (mut done, waiting) = (std::mem::take(&mut self.done), std::mem::take(&mut self.waiting));
+        done.iter().chain(&waiting).for_each(|&operation| self.is_held[operation as usize] = false);
+        while let Some(operation) = done.pop() {
+            let node = self.hierarchy.node(operation);
+            if self.front.is_active(node) {
+                self.hierarchy.parent(node).into_iter().for_each(|parent| self.drop(parent));
+                self.split(operation);
+                self.await_merge(operation);
+            } else {
+                self.merge(operation);
+            }
+        }
+        waiting.iter().for_each(|&operation| self.await_merges_around(self.hierarchy.node(operation)));
+        self.report = Report { evaluated: self.report.evaluated, ..before };
+        (self.done, self.waiting) = (done, waiting);
+        self.waiting.clear();
+    }
+
+    /// Splits an operation that is held and has no blocker.
+    fn split(&mut self, operation: u32) {
+        self.front.split(&self.hierarchy, operation);
+        self.refused.clear();
+        self.report.splits += 1;
+        self.drop(operation);
         for end in self.hierarchy.operation(operation).ends {
             if let Some(maker) = self.hierarchy.maker(end) {
                 self.await_split(maker);
@@ -299,6 +353,7 @@ impl Cut {
 
     fn merge(&mut self, operation: u32) {
         self.front.merge(&self.hierarchy, operation);
+        self.refused.clear();
         self.report.merges += 1;
         for end in self.hierarchy.operation(operation).ends {
             self.hierarchy.maker(end).into_iter().for_each(|maker| self.drop(maker));
@@ -312,19 +367,30 @@ impl Cut {
 
     /// What became possible because a node came to be.
     fn await_merges_around(&mut self, node: u32) {
-        let mut around = std::mem::take(&mut self.waiting);
+        let mut around = std::mem::take(&mut self.around);
         around.push(node);
         around.extend(self.front.neighbours(node));
+        around.sort_unstable();
+        around.dedup();
         for node in around.drain(..) {
-            if let Some(parent) = self.hierarchy.parent(node)
-                && self.merges.key(parent).is_none()
-                && self.front.may_merge(&self.hierarchy, parent)
-            {
-                let priority = self.look_at(parent);
-                self.merges.set(parent, u64::from(priority.to_bits()));
+            let parent = if self.is_to_be_split(node) { None } else { self.hierarchy.parent(node) };
+            if let Some(parent) = parent {
+                let is_known = self.is_held[parent as usize] || self.merges.key(parent).is_some();
+                if !is_known && self.front.may_merge(&self.hierarchy, parent) {
+                    self.await_merge(parent);
+                }
             }
         }
-        self.waiting = around;
+        self.around = around;
+    }
+
+    fn is_to_be_split(&self, node: u32) -> bool {
+        self.hierarchy.maker(node).is_some_and(|maker| self.is_held[maker as usize])
+    }
+
+    fn await_merge(&mut self, operation: u32) {
+        let priority = self.look_at(operation);
+        self.merges.set(operation, u64::from(priority.to_bits()));
     }
 
     fn await_split(&mut self, operation: u32) {
