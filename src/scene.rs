@@ -320,9 +320,9 @@ impl Objects {
     }
 
     /// Puts another table in the place of one, for all objects that have it: what its levels cost, how true they are, or
-    /// both have changed, as those of a cut do with the camera ([`Cut::offer`](crate::hierarchy::Cut::offer)). Levels
-    /// keep their numbers, so what is shown and remembered stays. Bounds of objects are not touched. The next frame prices
-    /// all tables anew, in O(levels).
+    /// both have changed, as those of a cut may with the camera ([`Cut::offer`](crate::hierarchy::Cut::offer)). Levels
+    /// keep their numbers, so what is shown and remembered stays. Bounds of objects are not touched. The next frame
+    /// prices all tables anew, in O(levels).
     ///
     /// # Errors
     /// An unknown table, and one of another number of levels: that is a new table, for [`Objects::set_table`].

@@ -19,8 +19,9 @@
 //! | [`Cone`] | which way errors point |
 //!
 //! The sizes of a cut are levels of a [`LodTable`](crate::table::LodTable): [`Hierarchy::table`] has them once and for
-//! all, [`Cut::offer`] as they are worth to the camera of the last update. So the selection shares one budget among
-//! cuts and all other objects: the triangles of the level that it chooses are the [`Budget`] of the cut.
+//! all (take that), [`Cut::offer`] as a model of what they are worth to the camera of the last update. So the
+//! selection shares one budget among cuts and all other objects: the triangles of the level that it chooses are the
+//! [`Budget`] of the cut.
 //!
 //! Do not take it for what fits into chunks of levels without much loss: a chunk is one number to choose and one
 //! buffer to draw, a cut has to be uploaded piece by piece.

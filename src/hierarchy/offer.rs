@@ -72,6 +72,9 @@ impl Cut {
     /// What the present cut is off by is known. From it to other numbers of triangles, errors are taken to change as they
     /// do along the record. Without a view it is the table as it was.
     ///
+    /// So do not steer a cut by what it offers itself: once it is coarse, no size looks worth its triangles. Take offers of
+    /// a cut of steady size, or the table of the hierarchy, which serves as well.
+    ///
     /// `table` is what [`Hierarchy::table`] gave. O(levels).
     ///
     /// # Errors
