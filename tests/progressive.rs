@@ -1,4 +1,5 @@
 //! Progressive meshes: every prefix is what simplification leaves, within its error, and the whole is the original.
+#![cfg(feature = "bake")]
 
 #[path = "progressive/files.rs"]
 mod files;

@@ -1,4 +1,5 @@
 //! Levels upwards, from files to tables.
+#![cfg(feature = "bake")]
 
 use glam::{Vec2, Vec3};
 use lod_budget::bake::Mesh;
