@@ -771,7 +771,7 @@ fn subdivision_that_makes_no_sense_is_refused() {
     for number in ["0", "254", "-1", "x"] {
         room.refused(&format!("bake cage.obj --subdivide={number}"), &[number]);
     }
-    for other in ["--levels 3", "--ratios 0.5", "--method melax", "--scene", "--split 100"] {
+    for other in ["--levels 3", "--ratios 0.5", "--method melax", "--scene", "--split 100", "--progressive"] {
         let name = other.split(' ').next().expect("a name");
         room.refused(&format!("bake cage.obj --subdivide 2 {other}"), &["--subdivide", name]);
     }
@@ -876,6 +876,22 @@ fn hierarchies_and_impostors_are_inspected() {
     let text = room.read("baked/field/field.impostor.json");
     room.put("wide.json", text.replacen("\"radius\": ", "\"radius\": -", 1));
     room.refused("inspect wide.json", &["wide.json: radius: "]);
+}
+
+#[test]
+fn a_progressive_mesh_is_written_and_inspected() {
+    let room = meadow();
+    let mesh = room.json("bake field.obj --levels 3 --progressive --json")["meshes"][0].clone();
+    let file = mesh["progressive_file"].as_str().expect("a file");
+    let seen = room.json(&format!("inspect {file} --json"));
+    assert_eq!(seen["original"]["triangles"], mesh["levels"][0]["triangles"]);
+    assert_eq!((seen["is_truncated"].as_bool(), seen["bytes"].as_u64().is_some()), (Some(false), true));
+    assert!(room.done(&format!("inspect {file}")).contains("Splits"));
+
+    let bytes = std::fs::read(room.path(file)).expect("it is there");
+    room.put("cut.lodp", &bytes[..bytes.len() - 1]).put("none.lodp", "PNG and so on, more than a head");
+    assert_eq!(room.json("inspect cut.lodp --json")["is_truncated"].as_bool(), Some(true));
+    room.refused("inspect none.lodp", &["none.lodp"]);
 }
 
 #[test]

@@ -211,7 +211,9 @@ fn bake(
     tell: &mut Tell<'_>,
 ) -> anyhow::Result<Baked> {
     if settings.subdivide.is_none() && args.scene.means(&input.file) {
-        ensure!(settings.impostor.is_none(), "{}: --impostor is for single meshes", input.file.display());
+        let file = input.file.display();
+        ensure!(settings.impostor.is_none(), "{file}: --impostor is for single meshes");
+        ensure!(settings.progressive.is_none(), "{file}: --progressive is for single meshes");
         let jobs = if found.inputs.len() == 1 { jobs } else { 1 };
         let (scene, parts) = scene::bake(input, found, settings, jobs, tell)?;
         return Ok(Baked::Scene(scene, parts));

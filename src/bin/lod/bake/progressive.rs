@@ -10,7 +10,7 @@ use lod_budget::bake::simplify::quietly;
 pub struct ProgressiveArgs {
     /// Write NAME.lodp, too: a coarse mesh and the splits that lead to the original, for any level in between; always by
     /// the method quadric
-    #[arg(long)]
+    #[arg(long, conflicts_with = "subdivide")]
     progressive: bool,
     /// Prefixes of it to measure while the number of triangles halves: more make its errors tighter
     #[arg(long, value_name = "N", default_value_t = Options::default().marks_per_halving, requires = "progressive")]
