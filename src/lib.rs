@@ -62,7 +62,8 @@
 //!   well. What is bought here is that nobody has to tune it, and that it holds when the scene or the machine changes.
 //! - **Time that does not come from objects.** Only what follows from draw calls, vertices, triangles and projected
 //!   area can be steered by levels; post-processing and simulation cannot.
-//! - **One huge mesh.** Terrain and cluster hierarchies need a cut through a tree, whose parts depend on each other.
+//! - **One huge mesh and nothing else.** A [`hierarchy`] has a cut for it, which needs no selection but where it shares a
+//!   budget. Clusters of triangles that are chosen on the graphics card are another matter.
 //! - **Some dozens of objects that fit anyway.** [`ScreenSize`] alone, or nothing, will do.
 //!
 //! # Modules, in the order of a frame

@@ -1,6 +1,8 @@
 //! Geomorphs: at weight 0 the finer level, at weight 1 the coarser one, whatever the mesh and the method.
 #![cfg(feature = "bake")]
 
+mod seams;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{Vec2, Vec3, Vec4};
@@ -9,7 +11,7 @@ use lod_budget::bake::deviation;
 use lod_budget::bake::geomorph::{Fit, Geomorph, GeomorphError};
 use lod_budget::bake::read::gltf;
 use lod_budget::bake::scene::{Options, Scene};
-use lod_budget::bake::shapes::{icosphere, terrain, torus, torus_knot};
+use lod_budget::bake::shapes::{icosphere, torus};
 use lod_budget::bake::simplify::{GarlandHeckbert, Method, Simplified, Topology};
 use lod_budget::bake::split::{self, split};
 use lod_budget::bake::weld::weld;
@@ -18,6 +20,7 @@ use lod_budget::bake::{Group, Mesh, Surface};
 #[cfg(feature = "files")]
 use lod_budget::table::LevelRecord;
 use proptest::prelude::*;
+use seams::meshes;
 
 // -- meshes
 
@@ -86,35 +89,6 @@ fn append(all: &mut Mesh, part: Mesh) {
     let moved =
         |g: Group| Group { triangles: g.triangles.start + triangles..g.triangles.end + triangles, ..g };
     all.groups.extend(part.groups.into_iter().map(moved));
-}
-
-/// With texture coordinates that jump at every corner that is not left alone, and two materials.
-fn with_seams(surface: Surface, seams: u32) -> Mesh {
-    let mut mesh = Mesh::from(surface);
-    let old = mesh.clone();
-    mesh.wedges = old.triangles.as_flattened().iter().map(|&w| old.wedges[w as usize]).collect();
-    mesh.triangles = (0..old.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    let uv = |(corner, &p): (usize, &u32)| {
-        let jumps = p.wrapping_mul(0x9e37_79b1) >> 28 < seams;
-        Vec2::new(p as f32, if jumps { (corner / 3 % 2) as f32 } else { 0.0 })
-    };
-    mesh.uvs = vec![mesh.wedges.iter().enumerate().map(uv).collect()];
-    let half = mesh.triangles.len() / 2;
-    let group = |name: &str, triangles| Group { material: Some(name.into()), triangles, ..Group::default() };
-    mesh.groups = vec![group("a", 0..half), group("b", half..mesh.triangles.len())];
-    weld(&mut mesh);
-    mesh
-}
-
-/// Closed ones and open ones, with seams and without.
-fn meshes() -> impl Strategy<Value = Mesh> {
-    let surface = prop_oneof![
-        (4..20u32, any::<u32>()).prop_map(|(side, seed)| terrain(side, seed)),
-        (12..40u32, 4..10u32).prop_map(|(along, around)| torus_knot(along, around)),
-        (3..8u32).prop_map(icosphere),
-        (4..20u32, 4..12u32).prop_map(|(along, around)| torus(along, around, 0.4)),
-    ];
-    (surface, 0..8u32).prop_map(|(surface, seams)| with_seams(surface, seams))
 }
 
 // -- chains
