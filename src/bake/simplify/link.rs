@@ -2,6 +2,8 @@
 //!
 //! T. K. Dey, H. Edelsbrunner, S. Guha, D. V. Nekhayev, "Topology preserving edge contraction", 1999.
 
+use std::hint::select_unpredictable;
+
 use super::fans::Fans;
 
 /// A set of vertices that is emptied in no time.
@@ -45,17 +47,15 @@ impl Stamps {
     }
 }
 
-/// The two corners of a triangle that are not `vertex`, in its direction.
+/// The two corners of a triangle that are not `vertex`, in its direction. Without branches: nobody can predict which
+/// corner a vertex is.
 #[inline]
 pub(super) fn others(triangle: [u32; 3], vertex: u32) -> [u32; 2] {
     let [a, b, c] = triangle;
-    if a == vertex {
-        [b, c]
-    } else if b == vertex {
-        [c, a]
-    } else {
-        [a, b]
-    }
+    let (is_a, is_b) = (a == vertex, b == vertex);
+    let next = select_unpredictable(is_a, b, select_unpredictable(is_b, c, a));
+    let last = select_unpredictable(is_a, c, select_unpredictable(is_b, a, b));
+    [next, last]
 }
 
 /// Triangles and the fans of their vertices.

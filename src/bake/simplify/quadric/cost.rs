@@ -1,5 +1,13 @@
 //! What orders contractions: from squared distances to a cost.
 
+use glam::DVec3;
+
+use super::form::Form;
+
+/// How much the squared length of an edge adds to its cost, compared with its squared error: enough to order what is
+/// flat but for rounding, too little to matter elsewhere.
+const SHORTER_FIRST: f64 = 1e-9;
+
 /// What the cost of a contraction is, given what the planes that were contracted weigh and how far they are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cost {
@@ -22,6 +30,12 @@ impl Cost {
             Self::Balanced if sum > 0.0 => (sum * (sum / weight).sqrt().sqrt()) as f32,
             Self::Balanced => 0.0,
         }
+    }
+
+    /// What an edge costs with the least error that its ends may have together.
+    #[inline]
+    pub(super) fn of_edge(self, error: f64, edge: DVec3, sum: &Form) -> f32 {
+        self.of(error + SHORTER_FIRST * sum.weight() * edge.length_squared(), sum.weight())
     }
 
     /// The sum that costs so much.

@@ -3,20 +3,25 @@
 
 use glam::DVec3;
 
-/// The squared distance from `point` to the nearest point of a triangle; not a number for one without area.
+/// The squared distance from `point` to the nearest point of a triangle, or `least` if that is less or the triangle has
+/// no area.
 #[inline]
-pub(super) fn distance2(point: DVec3, corners: [DVec3; 3]) -> f64 {
-    let [a, b, c] = corners;
-    let across = (b - a).cross(c - a);
-    let sides = [(a, b - a), (b, c - b), (c, a - c)];
-    let is_inside = |(start, side): &(DVec3, DVec3)| side.cross(point - *start).dot(across) >= 0.0;
-    if sides.iter().all(is_inside) {
-        (point - a).dot(across).powi(2) / across.length_squared()
-    } else {
-        sides
+pub(super) fn distance2(point: DVec3, [a, b, c]: [DVec3; 3], least: f64) -> f64 {
+    let (side, last, from_a) = (b - a, c - a, point - a);
+    let across = side.cross(last);
+    let across2 = across.length_squared();
+    let height2 = from_a.dot(across).powi(2) / across2;
+    let beyond_side = side.cross(from_a).dot(across);
+    let beyond_last = from_a.cross(last).dot(across);
+    if (beyond_side >= 0.0) & (beyond_last >= 0.0) & (beyond_side + beyond_last <= across2) {
+        least.min(height2)
+    } else if height2 < least {
+        [(from_a, side), (point - b, c - b), (from_a, last)]
             .iter()
-            .map(|&(start, side)| distance2_to_side(point - start, side))
-            .fold(f64::INFINITY, f64::min)
+            .map(|&(from_start, side)| distance2_to_side(from_start, side))
+            .fold(least, f64::min)
+    } else {
+        least
     }
 }
 
@@ -46,7 +51,7 @@ mod tests {
             let weights = (0..=STEPS).flat_map(|i| (0..=STEPS - i).map(move |j| [i, j, STEPS - i - j]));
             let places = weights.map(|w| (0..3).map(|k| f64::from(w[k]) / f64::from(STEPS) * corners[k]).sum::<DVec3>());
             let nearest = places.map(|q| p.distance(q)).fold(f64::INFINITY, f64::min);
-            let distance = distance2(p, corners).sqrt();
+            let distance = distance2(p, corners, f64::INFINITY).sqrt();
             prop_assert!(distance <= nearest + 1e-9 && nearest <= distance + 4.0 / f64::from(STEPS));
         }
     }

@@ -32,10 +32,19 @@ pub(super) struct Quadric {
 
 impl Quadric {
     /// `weight` times the squared distance to the plane through the vertex with the unit normal `normal`.
+    #[cfg(test)]
     pub(super) fn plane(normal: DVec3, weight: f64) -> Self {
-        let mixed = DVec3::new(normal.y * normal.z, normal.z * normal.x, normal.x * normal.y);
-        let diagonal = (weight * normal * normal).to_array();
-        Self { diagonal, mixed: (weight * mixed).to_array(), ..Self::default() }
+        let mut quadric = Self::default();
+        quadric.add_plane(normal, weight);
+        quadric
+    }
+
+    /// Adds `weight` times the squared distance to the plane through the vertex with the unit normal `normal`.
+    #[inline]
+    pub(super) fn add_plane(&mut self, n: DVec3, weight: f64) {
+        let (diagonal, mixed) = (weight * n * n, weight * DVec3::new(n.y * n.z, n.z * n.x, n.x * n.y));
+        self.diagonal = (DVec3::from_array(self.diagonal) + diagonal).to_array();
+        self.mixed = (DVec3::from_array(self.mixed) + mixed).to_array();
     }
 
     /// Some of its bits, for who wants it in the cache.
@@ -53,14 +62,22 @@ impl Quadric {
             constant: f64::from(self.constant),
         }
     }
-
-    /// Adds another that is seen from the same vertex.
-    pub(super) fn add(&mut self, other: &Self) {
-        *self = (self.form() + other.form()).pack();
-    }
 }
 
 impl Form {
+    /// Diagonal of A, the rest of it, b and c.
+    #[inline]
+    pub(super) fn to_array(self) -> [f64; 10] {
+        let (d, m, l) = (self.diagonal, self.mixed, self.linear);
+        [d.x, d.y, d.z, m.x, m.y, m.z, l.x, l.y, l.z, self.constant]
+    }
+
+    #[inline(always)]
+    pub(super) fn from_array([xx, yy, zz, yz, zx, xy, x, y, z, constant]: [f64; 10]) -> Self {
+        let diagonal = DVec3::new(xx, yy, zz);
+        Self { diagonal, mixed: DVec3::new(yz, zx, xy), linear: DVec3::new(x, y, z), constant }
+    }
+
     /// `weight` times the square of the linear function with that slope, and that value at the origin.
     #[inline]
     pub(super) fn square(slope: DVec3, value: f64, weight: f64) -> Self {
@@ -80,7 +97,7 @@ impl Form {
     }
 
     /// The same form seen from another origin.
-    #[inline]
+    #[inline(always)]
     pub(super) fn seen_from(&self, origin: DVec3) -> Self {
         let along = self.times(origin);
         let constant = self.constant + origin.dot(along + 2.0 * self.linear);
@@ -88,7 +105,7 @@ impl Form {
     }
 
     /// `A·v`.
-    #[inline]
+    #[inline(always)]
     fn times(&self, v: DVec3) -> DVec3 {
         let (d, m) = (self.diagonal, self.mixed);
         DVec3::new(
@@ -99,13 +116,13 @@ impl Form {
     }
 
     /// The error at `v`, which rounding may make slightly negative.
-    #[inline]
+    #[inline(always)]
     pub(super) fn at(&self, v: DVec3) -> f64 {
         v.dot(self.times(v) + 2.0 * self.linear) + self.constant
     }
 
     /// Half the gradient at `v`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn slope(&self, v: DVec3) -> DVec3 {
         self.times(v) + self.linear
     }
@@ -117,32 +134,31 @@ impl Form {
     }
 
     /// The weight of all planes together: the trace of A.
-    #[inline]
+    #[inline(always)]
     pub(super) fn weight(&self) -> f64 {
         self.diagonal.element_sum()
     }
 
-    /// The point where `Q(v) + stiffness·tr(A)·|v − near|²` is least; `None` if A is 0. Takes some 50 operations.
+    /// The point where `Q(v) + stiffness·tr(A)·|v − near|²` is least; not finite if A is 0. Takes some 50 operations.
     ///
     /// With no stiffness that is the least of Q itself, which is no single point on planes and along straight creases
     /// and far away where they are nearly so. With a little the point does not leave `near` without a reason.
-    #[inline]
-    pub(super) fn least(&self, near: DVec3, stiffness: f64) -> Option<DVec3> {
+    #[inline(always)]
+    pub(super) fn least(&self, near: DVec3, stiffness: f64) -> DVec3 {
         let d = self.diagonal + stiffness * self.weight();
         let m = self.mixed;
         let cofactors = DVec3::new(d.y * d.z - m.x * m.x, d.z * d.x - m.y * m.y, d.x * d.y - m.z * m.z);
         let mixed = DVec3::new(m.y * m.z - m.x * d.x, m.z * m.x - m.y * d.y, m.x * m.y - m.z * d.z);
         let determinant = d.x * cofactors.x + m.z * mixed.z + m.y * mixed.y;
         let inverse = Self { diagonal: cofactors, mixed, ..Self::default() };
-        let step = inverse.times(self.slope(near)) / determinant;
-        step.is_finite().then(|| near - step)
+        near - inverse.times(self.slope(near)) / determinant
     }
 }
 
 impl Add for Form {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self {
             diagonal: self.diagonal + other.diagonal,
@@ -200,7 +216,7 @@ mod tests {
             let normals = [DVec3::X, DVec3::Y + 0.5 * tilt, DVec3::Z - 0.5 * tilt];
             let planes = normals.map(|n| plane(n.normalize(), corner, 1.0));
             let sum = planes[0] + planes[1] + planes[2];
-            let least = sum.least(near, 0.0).expect("three planes meet");
+            let least = sum.least(near, 0.0);
             prop_assert!(sum.at(least) <= sum.at(least + step) + 1e-9);
         }
     }
@@ -208,9 +224,9 @@ mod tests {
     #[test]
     fn on_a_plane_the_least_is_the_foot_of_where_one_stands() {
         let plane = plane(DVec3::Z, DVec3::new(9.0, 9.0, 1.0), 3.0);
-        let foot = plane.least(DVec3::new(2.0, -1.0, 1.5), 1e-6).expect("there is a plane");
+        let foot = plane.least(DVec3::new(2.0, -1.0, 1.5), 1e-6);
         assert!(foot.distance(DVec3::new(2.0, -1.0, 1.0)) < 1e-5, "{foot}");
-        assert_eq!(Form::default().least(DVec3::ONE, 1e-6), None);
+        assert!(!Form::default().least(DVec3::ONE, 1e-6).is_finite());
         assert_eq!(plane.weight(), 3.0);
     }
 

@@ -14,6 +14,7 @@
 
 mod cost;
 mod distance;
+mod edges;
 mod form;
 mod greedy;
 mod guard;

@@ -38,6 +38,15 @@ impl Spot {
         Self { place, error: form.at(place).max(0.0) }
     }
 
+    /// Where the error of an edge is least, and whether that is near enough to its middle.
+    #[inline(always)]
+    pub(super) fn least(edge: DVec3, sum: &Form) -> (Self, bool) {
+        let middle = 0.5 * edge;
+        let place = sum.least(middle, STIFFNESS);
+        let is_in_reach = place.distance_squared(middle) <= REACH * REACH * edge.length_squared();
+        (Self::new(place, sum), is_in_reach)
+    }
+
     /// The one of less error, the first where they are equal.
     fn better(self, other: Self) -> Self {
         if other.error < self.error { other } else { self }
@@ -60,12 +69,8 @@ impl Placement {
 
 #[inline]
 fn optimal(edge: DVec3, sum: &Form) -> Spot {
-    let middle = 0.5 * edge;
-    let in_reach = |p: &DVec3| p.distance_squared(middle) <= REACH * REACH * edge.length_squared();
-    match sum.least(middle, STIFFNESS).filter(in_reach) {
-        Some(place) => Spot::new(place, sum),
-        None => on_edge(edge, sum),
-    }
+    let (spot, is_in_reach) = Spot::least(edge, sum);
+    if is_in_reach { spot } else { on_edge(edge, sum) }
 }
 
 /// The best of the end points and of the lowest point between them.

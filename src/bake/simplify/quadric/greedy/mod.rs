@@ -1,5 +1,6 @@
 //! The greedy: contract the edge that costs least, until there are few enough triangles.
 
+mod choice;
 mod outcome;
 mod prepare;
 mod step;
@@ -11,12 +12,14 @@ use std::ops::ControlFlow;
 
 use glam::{DVec3, Vec3};
 
+use choice::Choice;
 use step::Step;
 use verdict::Verdict;
 use witness::{Seen, Witness};
 
 use crate::bake::simplify::fans::Fans;
 use crate::bake::simplify::link::{Stamps, others};
+use crate::bake::simplify::quadric::edges::Edges;
 use crate::bake::simplify::quadric::form::Quadric;
 use crate::bake::simplify::quadric::guard::{Facing, Guard};
 use crate::bake::simplify::quadric::layer::{Around, Move};
@@ -35,6 +38,9 @@ const STRIDE: usize = 4096;
 
 /// The queue is filled again while at least one in so many vertices was contracted since it was.
 const WORTH_A_SWEEP: usize = 64;
+
+/// A mesh of fewer triangles is in the processor's cache as a whole, or nearly.
+const LARGE: usize = 50_000;
 
 /// A triangle that went.
 const GONE: [u32; 3] = [u32::MAX; 3];
@@ -59,30 +65,6 @@ mod mark {
     pub const SEAM: u8 = 128;
     /// What a vertex has from those that are contracted into it.
     pub const INHERITED: u8 = LOCKED | BORDER | ODD | SEAM;
-}
-
-/// A contraction of a vertex, with one of higher index: the bits of its cost, then the partner, so that whole numbers
-/// order them by cost and then by partner.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-struct Choice(u64);
-
-impl Choice {
-    /// The choice after all others.
-    const NONE: Self = Self(u64::MAX);
-
-    /// A cost that is not a number comes last.
-    #[inline]
-    fn new(cost: f32, partner: u32) -> Self {
-        Self(u64::from(cost.abs().to_bits()) << 32 | u64::from(partner))
-    }
-
-    fn cost(self) -> f32 {
-        f32::from_bits((self.0 >> 32) as u32)
-    }
-
-    fn partner(self) -> u32 {
-        self.0 as u32
-    }
 }
 
 /// A simplification on its way. Every edge belongs to its lower end, which is in the queue with the cheapest of its
@@ -135,6 +117,8 @@ pub(super) struct Greedy<'a> {
     fan: Vec<u32>,
     /// What a vertex may be contracted with.
     partners: Vec<u32>,
+    /// What is known of the edges to them.
+    edges: Edges,
 }
 
 impl<'a> Greedy<'a> {
@@ -197,10 +181,13 @@ impl<'a> Greedy<'a> {
     }
 
     /// Reads what the next looks will need, so that it is in the cache when their turn comes: they are all over the
-    /// mesh, and simplification waits for memory more than for anything else. What is found by what was read has to
-    /// wait for the next stage.
+    /// mesh, and simplification of a large one waits for memory more than for anything else. What is found by what was
+    /// read has to wait for the next stage.
     #[inline]
     fn read_ahead(&self) {
+        if self.from < LARGE {
+            return;
+        }
         let Some([far, near, next]) = self.queue.ahead([14, 10, 6]) else { return };
         let partner = |vertex: u32| self.choices[vertex as usize].partner();
         let any_triangle = |vertex| self.fans.of(vertex).first().map_or(0, |&t| t);
@@ -238,60 +225,6 @@ impl<'a> Greedy<'a> {
             Verdict::For(price) => self.put_off(vertex, choice, price),
         }
         matches!(may, Verdict::Yes)
-    }
-
-    /// Has a vertex come again with the next of its choices, or with this one at a price if that is less.
-    fn put_off(&mut self, vertex: u32, choice: Choice, price: f32) {
-        let next = self.cheapest(vertex, Choice(choice.0 + 1));
-        self.marks[vertex as usize] |= mark::SETTLED;
-        self.choices[vertex as usize] = next.min(Choice::new(price, choice.partner()));
-        self.queue.push(self.choices[vertex as usize].cost(), vertex);
-    }
-
-    /// Chooses the cheapest contraction of a vertex above that one, and puts it into the queue.
-    fn choose(&mut self, vertex: u32, above: Option<Choice>) {
-        let choice = self.cheapest(vertex, above.map_or(Choice(0), |Choice(c)| Choice(c + 1)));
-        let marks = &mut self.marks[vertex as usize];
-        *marks &= !(mark::IDLE | mark::SETTLED);
-        *marks |= if above.is_some() { mark::SETTLED } else { 0 };
-        if choice == Choice::NONE {
-            *marks |= mark::IDLE;
-            return;
-        }
-        self.choices[vertex as usize] = choice;
-        self.queue.push(choice.cost(), vertex);
-    }
-
-    /// The cheapest contraction of a vertex from that one on.
-    ///
-    /// Where every edge has as many triangles in either direction it is enough to look at one corner of each.
-    fn cheapest(&mut self, vertex: u32, from: Choice) -> Choice {
-        let fan = self.fans.of(vertex);
-        if fan.is_empty() || fan.len() > LARGEST_FAN {
-            return Choice::NONE;
-        }
-        let is_odd = self.marks[vertex as usize] & mark::ODD != 0;
-        let mut partners = std::mem::take(&mut self.partners);
-        partners.clear();
-        let sides = fan.iter().map(|&t| others(self.triangles[t as usize], vertex));
-        if is_odd {
-            partners.extend(sides.flatten().filter(|&p| p > vertex));
-        } else {
-            partners.extend(sides.map(|[p, _]| p).filter(|&p| p > vertex));
-        }
-        if let Some(pairs) = &self.pairs {
-            let is_left = |p: &&u32| **p > vertex && !self.fans.of(**p).is_empty();
-            partners.extend(pairs.of(vertex).iter().filter(is_left));
-        }
-        // All are read before any is needed: one wait instead of one for each.
-        black_box(partners.iter().fold(0, |bits, &p| bits ^ self.quadrics[p as usize].bits()));
-        let mut cheapest = Choice::NONE;
-        for &partner in &partners {
-            let choice = Choice::new(self.cost(vertex, partner), partner);
-            cheapest = if choice >= from { cheapest.min(choice) } else { cheapest };
-        }
-        self.partners = partners;
-        cheapest
     }
 
     /// Contracts `gone` into `kept`.
@@ -363,8 +296,7 @@ impl<'a> Greedy<'a> {
     /// Whether a triangle of `kept` stays one.
     fn keeps(&mut self, triangle: u32, kept: u32, gone: u32) -> bool {
         let [p, q] = others(self.triangles[triangle as usize], kept);
-        self.disturb(p, kept, gone);
-        self.disturb(q, kept, gone);
+        self.disturb_side([p, q], kept, gone);
         (p != gone) & (q != gone)
     }
 
@@ -372,8 +304,7 @@ impl<'a> Greedy<'a> {
     fn hand_over(&mut self, triangle: u32, kept: u32, gone: u32) -> bool {
         let [p, q] = others(self.triangles[triangle as usize], gone);
         let goes = (p == kept) | (q == kept);
-        self.disturb(p, kept, gone);
-        self.disturb(q, kept, gone);
+        self.disturb_side([p, q], kept, gone);
         if goes {
             self.live -= 1;
             self.triangles[triangle as usize] = GONE;
@@ -383,6 +314,16 @@ impl<'a> Greedy<'a> {
             *corners = corners.map(|corner| if corner == gone { kept } else { corner });
         }
         !goes
+    }
+
+    /// Has two neighbours in a triangle choose again, or only the first: where every edge has as many triangles in either
+    /// direction the second is the first of another.
+    #[inline]
+    fn disturb_side(&mut self, [next, last]: [u32; 2], kept: u32, gone: u32) {
+        self.disturb(next, kept, gone);
+        if self.marks[kept as usize] & mark::ODD != 0 {
+            self.disturb(last, kept, gone);
+        }
     }
 
     /// Has a neighbour of a contraction choose again, when its turn comes, if its choice is one of the two or if it had

@@ -2,11 +2,13 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{Choice, Greedy, mark};
+use super::choice::Choice;
+use super::{Greedy, mark};
 use crate::bake::simplify::Task;
 use crate::bake::simplify::fans::Fans;
 use crate::bake::simplify::link::{Complex, Stamps, others};
 use crate::bake::simplify::order::{along_curve, by_lowest_corner};
+use crate::bake::simplify::quadric::edges::Edges;
 use crate::bake::simplify::quadric::form::Quadric;
 use crate::bake::simplify::quadric::guard::{Facing, Guard};
 use crate::bake::simplify::quadric::layers::Layers;
@@ -54,6 +56,7 @@ impl<'a> Greedy<'a> {
             witness: None,
             fan: Vec::new(),
             partners: Vec::new(),
+            edges: Edges::new(),
         };
         greedy.sum_up(&weights);
         greedy.find_pairs();
@@ -77,10 +80,9 @@ impl<'a> Greedy<'a> {
             let across = (b - a).cross(c - a);
             let normal = across.normalize_or_zero();
             let area = 0.5 * weight * across.length();
-            let plane = Quadric::plane(normal, area);
             self.facings[t] = Facing::new(normal);
             for corner in corners {
-                self.quadrics[corner as usize].add(&plane);
+                self.quadrics[corner as usize].add_plane(normal, area);
                 self.areas[corner as usize] += area as f32;
             }
         }
@@ -116,10 +118,15 @@ impl<'a> Greedy<'a> {
     /// neighbour of triangles that lead to it, and 2³² times those that come from it.
     fn find_borders(&mut self, vertex: u32, weights: &[f64], uses: &mut [u64]) {
         const PLAIN: u64 = 1 << 32 | 1;
-        for &triangle in self.fans.of(vertex) {
-            let [p, q] = others(self.triangles[triangle as usize], vertex);
+        let sides = self.fans.of(vertex).iter().map(|&t| others(self.triangles[t as usize], vertex));
+        for [p, q] in sides.clone() {
             uses[p as usize] += 1;
             uses[q as usize] += 1 << 32;
+        }
+        // Where every neighbour has one triangle in either direction there are no others.
+        if sides.clone().all(|[p, _]| uses[p as usize] == PLAIN) {
+            sides.for_each(|[p, _]| uses[p as usize] = 0);
+            return;
         }
         for i in 0..self.fans.of(vertex).len() {
             let triangle = self.fans.of(vertex)[i] as usize;
@@ -147,8 +154,7 @@ impl<'a> Greedy<'a> {
         let [a, b, c] = self.triangles[triangle].map(|v| self.place(v));
         let edge = self.place(neighbour) - self.place(vertex);
         let upright = (b - a).cross(c - a).cross(edge).normalize_or_zero();
-        let plane = Quadric::plane(upright, weight * edge.length_squared());
-        self.quadrics[vertex as usize].add(&plane);
+        self.quadrics[vertex as usize].add_plane(upright, weight * edge.length_squared());
     }
 }
 

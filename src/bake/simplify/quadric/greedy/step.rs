@@ -8,10 +8,6 @@ use crate::bake::simplify::quadric::layer::Move;
 use crate::bake::simplify::quadric::layers::Layers;
 use crate::bake::simplify::quadric::placement::Spot;
 
-/// How much the squared length of an edge adds to its cost, compared with its squared error: enough to order what is
-/// flat but for rounding, too little to matter elsewhere.
-const SHORTER_FIRST: f64 = 1e-9;
-
 /// What contracting two vertices means.
 pub(super) struct Step {
     pub(super) way: Move,
@@ -89,7 +85,6 @@ impl Greedy<'_> {
     pub(super) fn cost(&self, a: u32, b: u32) -> f32 {
         let edge = self.place(b) - self.place(a);
         let sum = self.sum(a, b, edge);
-        let spread = SHORTER_FIRST * sum.weight() * edge.length_squared();
-        self.method.cost.of(self.spot(a, b, edge, &sum).error + spread, sum.weight())
+        self.method.cost.of_edge(self.spot(a, b, edge, &sum).error, edge, &sum)
     }
 }

@@ -77,7 +77,7 @@ impl Greedy<'_> {
                 }
                 let [p, q] = others(self.triangles[triangle as usize], vertex);
                 if p != opposite && q != opposite {
-                    least = least.min(distance2(at, [to, self.place(p), self.place(q)]));
+                    least = distance2(at, [to, self.place(p), self.place(q)], least);
                 }
             }
         }
