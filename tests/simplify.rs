@@ -159,6 +159,22 @@ fn an_error_keeps_parts_that_free_topology_could_drop() {
     assert!(has_small(Target::error(1e-3)) && !has_small(Target::triangles(8)));
 }
 
+/// A plate and a single triangle, far away: a needle, whose tip is at neither end of the edge that goes.
+#[test]
+fn an_error_keeps_needles_that_free_topology_could_drop() {
+    let mut both = terrain(20, 0);
+    let first = both.positions.len() as u32;
+    both.positions.extend([[0.0, 0.0, 5.0], [0.1, 0.0, 5.0], [0.1, 0.005, 5.0]].map(Vec3::from_array));
+    both.triangles.push([first, first + 1, first + 2]);
+    let mesh = Mesh::from(both);
+    let method = GarlandHeckbert { topology: Topology::Free, ..Default::default() };
+    let has_needle = |target| {
+        let result = simplify(&method, &Task::new(&mesh, target));
+        result.mesh.positions.iter().any(|p| p.z > 4.0)
+    };
+    assert!(has_needle(Target::error(0.05)) && !has_needle(Target::error(0.2)));
+}
+
 /// A tube without rings along it, whose triangles are all slivers.
 #[test]
 fn a_plain_cylinder_gets_fewer_sides() {

@@ -65,7 +65,7 @@ pub struct GarlandHeckbert {
     /// it is among their eight.
     pub pairs: f32,
     /// How much moving away from a border counts, compared with moving away from the surface, ≥ 0. Edges of more than
-    /// two triangles count as borders.
+    /// two triangles are no borders: the surface does not end there.
     pub border: f32,
     /// How much attributes count.
     pub attributes: Attributes,

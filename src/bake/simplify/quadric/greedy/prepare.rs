@@ -114,7 +114,8 @@ impl<'a> Greedy<'a> {
         }
     }
 
-    /// Marks a vertex that has borders, and holds it to them. `uses` is 0 everywhere, and has room for counts: per
+    /// Marks a vertex that has borders, and holds it to those of one triangle. Where more than two meet nothing ends, and
+    /// their own planes hold the edge if they meet at an angle. `uses` is 0 everywhere, and has room for counts: per
     /// neighbour of triangles that lead to it, and 2³² times those that come from it.
     fn find_borders(&mut self, vertex: u32, weights: &[f64], uses: &mut [u64]) {
         const PLAIN: u64 = 1 << 32 | 1;
@@ -136,7 +137,7 @@ impl<'a> Greedy<'a> {
                     self.marks[vertex as usize] |= if to != from { mark::ODD } else { 0 };
                     self.marks[vertex as usize] |= if to + from != 2 { mark::BORDER } else { 0 };
                 }
-                if to + from != 2 {
+                if to + from == 1 {
                     let weight = weights[triangle] * f64::from(self.method.border);
                     self.hold_to_edge(vertex, neighbour, triangle, weight);
                 }

@@ -10,10 +10,6 @@ use crate::bake::simplify::quadric::layer::Move;
 use crate::bake::simplify::quadric::layers::Layers;
 use crate::bake::simplify::quadric::{Cost, Topology};
 
-/// A contraction that changes the topology costs as if all that went into both ends moved by this share of their longest
-/// edge. Higher keeps small parts at the expense of everything else; lower lets parts go that could be seen.
-const TOPOLOGY_MOVES: f64 = 0.03;
-
 /// A contraction costs no less than if this share of all that went into both ends were as far off as the ends will be:
 /// a tip that goes takes a cone with it.
 const TIP: f64 = 0.5;
@@ -45,7 +41,7 @@ impl Greedy<'_> {
         } else {
             match self.method.topology {
                 Topology::Preserved => Verdict::No,
-                Topology::Free => self.price_of_topology(step),
+                Topology::Free => self.price_of_topology(step, to),
             }
         }
     }
@@ -60,15 +56,14 @@ impl Greedy<'_> {
         let area = TIP * f64::from(self.areas[kept as usize] + self.areas[gone as usize]);
         let paid = self.choices[kept as usize].cost();
         let enough = self.method.cost.sum(paid, area) / area;
-        let distance2 = |end, other| self.distance2_to_rest(end, other, to, enough);
+        let distance2 = |end, other| self.distance2_to_rest(self.place(end), [end, other], to, enough);
         let price = self.method.cost.of(area * distance2(kept, gone).max(distance2(gone, kept)), area);
         if price > paid { Verdict::For(price) } else { Verdict::Yes }
     }
 
-    /// The squared distance of one end of an edge to the triangles that are left when both have gone to `to`, or a
-    /// distance that is no more than `enough`.
-    fn distance2_to_rest(&self, end: u32, other: u32, to: DVec3, enough: f64) -> f64 {
-        let at = self.place(end);
+    /// The squared distance of a place to the triangles that are left of two vertices when both have gone to `to`, or a
+    /// distance that is no more than `enough`. Where nothing is left that is the distance to `to`.
+    fn distance2_to_rest(&self, at: DVec3, [end, other]: [u32; 2], to: DVec3, enough: f64) -> f64 {
         let mut least = at.distance_squared(to);
         for (vertex, opposite) in [(end, other), (other, end)] {
             for &triangle in self.fans.of(vertex) {
@@ -90,17 +85,20 @@ impl Greedy<'_> {
         complex.may_contract(kept, gone, at_border, &mut self.stamps) && self.keeps_charts(kept, gone)
     }
 
-    /// A step that changes the topology has a price of its own: quadrics know of planes, and not that a part ends or a
-    /// hole closes. That pairs without an edge join is what they are for.
-    fn price_of_topology(&self, step: &Step) -> Verdict {
+    /// Quadrics know of planes, and not that a part ends or a hole closes. So a step that changes the topology always
+    /// costs what a tip does: by how far from what is left the vertices are that go. That pairs without an edge join is
+    /// what they are for.
+    fn price_of_topology(&self, step: &Step, to: DVec3) -> Verdict {
         let Move { kept, gone, .. } = step.way;
         if self.around().edge(kept, gone).next().is_none() {
             return Verdict::Yes;
         }
-        let moved = TOPOLOGY_MOVES * TOPOLOGY_MOVES * self.reach(kept).max(self.reach(gone));
-        let area = f64::from(self.areas[kept as usize] + self.areas[gone as usize]);
-        let price = self.method.cost.of(area * moved, area);
-        if self.in_units(moved) > self.most {
+        let going = self.stranded(kept, gone).chain([kept, gone]);
+        let distance2 = |vertex| self.distance2_to_rest(self.place(vertex), [kept, gone], to, 0.0);
+        let farthest2 = going.map(distance2).fold(0.0, f64::max);
+        let area = TIP * f64::from(self.areas[kept as usize] + self.areas[gone as usize]);
+        let price = self.method.cost.of(area * farthest2, area);
+        if self.in_units(farthest2) > self.most {
             Verdict::No
         } else if self.is_free || self.choices[kept as usize].cost() >= price {
             Verdict::Yes
@@ -109,11 +107,14 @@ impl Greedy<'_> {
         }
     }
 
-    /// The squared length of the longest edge at a vertex.
-    fn reach(&self, vertex: u32) -> f64 {
-        let at = self.place(vertex);
-        let ring = self.fans.of(vertex).iter().flat_map(|&t| self.triangles[t as usize]);
-        ring.map(|v| self.place(v).distance_squared(at)).fold(0.0, f64::max)
+    /// The vertices that have triangles at an edge and nowhere else: they go with it.
+    fn stranded(&self, a: u32, b: u32) -> impl Iterator<Item = u32> {
+        let far = self.around().edge(a, b).flat_map(|t| self.triangles[t]).filter(move |&v| v != a && v != b);
+        let is_at_edge = move |&t: &u32| {
+            let corners = self.triangles[t as usize];
+            corners.contains(&a) && corners.contains(&b)
+        };
+        far.filter(move |&vertex| self.fans.of(vertex).iter().all(is_at_edge))
     }
 
     /// Whether what is between seams stays whole: two vertices on seams may become one only along a seam.
