@@ -157,8 +157,12 @@ impl<'a> Assembly<'a> {
         (0..corners).map(checked).collect()
     }
 
-    /// A wedge for each of these vertices; columns that are new start with neutral rows for the wedges before.
+    /// A wedge for each of these vertices; columns that are new start with neutral rows for the wedges before. No
+    /// vertices bring no column: one without rows would be taken for one that nobody has.
     fn add_vertices(&mut self, attributes: &Attributes<'_>, space: &Space, vertices: &[usize]) {
+        if vertices.is_empty() {
+            return;
+        }
         let mesh = &mut self.mesh;
         let before = mesh.wedges.len();
         let after = before + vertices.len();

@@ -38,7 +38,8 @@ fn json(nodes: &str, primitives: &str) -> String {
             {{"bufferView":3,"componentType":5126,"count":4,"type":"VEC3"}},
             {{"bufferView":1,"componentType":5121,"count":2,"type":"VEC4","normalized":true}},
             {{"componentType":5126,"count":4,"type":"VEC3","sparse":{{"count":1,
-                "indices":{{"bufferView":1,"byteOffset":1,"componentType":5121}},"values":{{"bufferView":3}}}}}}]}}"#
+                "indices":{{"bufferView":1,"byteOffset":1,"componentType":5121}},"values":{{"bufferView":3}}}}}},
+            {{"bufferView":1,"componentType":5121,"count":2,"type":"SCALAR"}}]}}"#
     )
 }
 
@@ -96,6 +97,13 @@ fn primitives_without_an_attribute_get_a_neutral_one() {
     assert_eq!((mesh.colours[at(0)], mesh.colours[at(1)]), (Vec4::ONE, Vec4::new(1., 0., 0., 1.)));
     assert_eq!((mesh.normals[at(0)], mesh.normals[at(2)]), (Vec3::ZERO, Vec3::Z));
     assert_eq!(mesh.uvs[0][at(0)], Vec2::ZERO);
+}
+
+#[test]
+fn primitives_without_a_triangle_bring_no_column() {
+    let none = r#"{"attributes":{"POSITION":0,"NORMAL":3,"TEXCOORD_0":2},"indices":6}"#;
+    let mesh = read_parts(r#"{"mesh":0}"#, &format!("{none},{PLAIN}"));
+    assert_eq!((mesh.triangles.len(), mesh.normals.len(), mesh.uvs.len()), (2, 0, 0));
 }
 
 #[test]
