@@ -209,14 +209,25 @@ fn repeated_meshes_do_not_fill_the_memory() {
     assert_eq!(long(50).expect("half a million").mesh.triangles.len(), 500_000);
     let error = long(200).expect_err("two millions").to_string();
     let place = "a.glb: node 104, mesh 0 \"square\", primitive 0: ";
-    assert_eq!(error, format!("{place}with it there are more triangles than the file has bytes"));
+    assert_eq!(error, format!("{place}with it there are more triangles or names than the file has bytes"));
     let empty = vec![r#"{"attributes":{"POSITION":0},"mode":0}"#; 2000].join(",");
     let error = read(&glb(&json(&vec![r#"{"mesh":0}"#; 600].join(","), &empty), &square()), "a.glb", None);
-    assert!(error.expect_err("more than a million points").to_string().contains("more triangles than"));
+    assert!(
+        error.expect_err("more than a million points").to_string().contains("more triangles or names than")
+    );
     let zeros = json(r#"{"mesh":0}"#, r#"{"attributes":{"POSITION":5}}"#)
         .replace(r#""count":4,"type":"VEC3","sparse""#, r#""count":4000000000,"type":"VEC3","sparse""#);
     let error = read(&glb(&zeros, &square()), "a.glb", None).expect_err("refused").to_string();
     assert!(error.contains("accessor 5: it must not have more rows than the file has bytes"), "{error}");
+}
+
+#[test]
+fn repeated_names_do_not_fill_the_memory() {
+    let many = vec![PLAIN; 1000].join(",");
+    let text =
+        json(&vec![r#"{"mesh":0}"#; 1000].join(","), &many).replace("square", &"\u{1F600}".repeat(256));
+    let error = read(&glb(&text, &square()), "a.glb", None).expect_err("a gigabyte").to_string();
+    assert!(error.ends_with("with it there are more triangles or names than the file has bytes"), "{error}");
 }
 
 #[test]
