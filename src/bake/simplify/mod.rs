@@ -41,6 +41,7 @@ mod quadric;
 mod queue;
 mod rebuild;
 mod star;
+mod steps;
 mod triangle;
 mod workpiece;
 
