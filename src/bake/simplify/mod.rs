@@ -146,6 +146,12 @@ impl<'a> Task<'a> {
         }
     }
 
+    /// The triangles that use three positions, and which these are.
+    fn proper_triangles(&self) -> (Vec<u32>, Vec<[u32; 3]>) {
+        let all = (0..self.mesh.triangles.len()).map(|t| (t as u32, self.mesh.corners(t)));
+        all.filter(|&(_, [a, b, c])| a != b && b != c && c != a).unzip()
+    }
+
     fn is_locked(&self, vertex: usize) -> bool {
         self.locked.get(vertex).is_some_and(|&l| l)
     }
