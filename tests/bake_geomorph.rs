@@ -15,7 +15,6 @@ use lod_budget::bake::scene::{Options, Scene};
 use lod_budget::bake::shapes::{icosphere, torus};
 use lod_budget::bake::simplify::{GarlandHeckbert, Method, Simplified, Topology};
 use lod_budget::bake::split::{self, split};
-use lod_budget::bake::weld::weld;
 use lod_budget::bake::write::{LevelOut, Measured, glb};
 use lod_budget::bake::{Group, Mesh, Surface};
 #[cfg(feature = "files")]

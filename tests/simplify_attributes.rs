@@ -9,7 +9,6 @@ use glam::{Vec2, Vec3};
 use lod_budget::bake::simplify::{
     Attributes, GarlandHeckbert, Placement, Simplified, Simplifier, Stopped, Target, Task, Topology, quietly,
 };
-use lod_budget::bake::weld::weld;
 use lod_budget::bake::{Group, Mesh};
 use proptest::prelude::*;
 use textured::{grid, hard_box, torus};
