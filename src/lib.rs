@@ -144,6 +144,9 @@ pub mod check;
 pub mod ecs;
 
 // -- rooms, each behind a feature
+#[cfg(any(feature = "files", feature = "bake"))]
+mod gltf;
+
 #[cfg(feature = "files")]
 pub mod files;
 

@@ -2,6 +2,7 @@
 #![cfg(feature = "bake")]
 
 mod seams;
+mod textured;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,81 +15,30 @@ use lod_budget::bake::scene::{Options, Scene};
 use lod_budget::bake::shapes::{icosphere, torus};
 use lod_budget::bake::simplify::{GarlandHeckbert, Method, Simplified, Topology};
 use lod_budget::bake::split::{self, split};
-use lod_budget::bake::weld::weld;
 use lod_budget::bake::write::{LevelOut, Measured, glb};
 use lod_budget::bake::{Group, Mesh, Surface};
 #[cfg(feature = "files")]
 use lod_budget::table::LevelRecord;
 use proptest::prelude::*;
 use seams::meshes;
+use textured::{append, grid};
 
 // -- meshes
 
-/// A grid of `columns` by `rows` cells, its corners placed and given attributes by what is asked for, welded.
-fn grid(columns: u32, rows: u32, corner: impl Fn(u32, u32) -> (Vec3, Vec3, Vec2)) -> Mesh {
-    let mut mesh = Mesh { uvs: vec![Vec::new()], ..Mesh::default() };
-    for (row, column) in (0..=rows).flat_map(|row| (0..=columns).map(move |column| (row, column))) {
-        let (position, normal, uv) = corner(column, row);
-        mesh.wedges.push(mesh.positions.len() as u32);
-        mesh.positions.push(position);
-        mesh.normals.push(normal);
-        mesh.uvs[0].push(uv);
-        mesh.colours.push(position.abs().extend(1.0).min(Vec4::ONE));
-        mesh.tangents.push(normal.any_orthonormal_vector().extend(1.0));
-    }
-    for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
-        let [a, b] = [row * (columns + 1) + column, (row + 1) * (columns + 1) + column];
-        mesh.triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
-    }
-    mesh.groups.push(Group { triangles: 0..mesh.triangles.len(), ..Group::default() });
-    weld(&mut mesh);
+/// With colours that follow from places, and tangents that follow from normals.
+fn dressed(mut mesh: Mesh) -> Mesh {
+    mesh.colours =
+        mesh.wedges.iter().map(|&p| mesh.positions[p as usize].abs().extend(1.0).min(Vec4::ONE)).collect();
+    mesh.tangents = mesh.normals.iter().map(|n| n.any_orthonormal_vector().extend(1.0)).collect();
     mesh
 }
 
-/// A torus with smooth normals, whose texture coordinates go once around either way: two seams.
 fn textured_torus(rings: u32, sides: u32) -> Mesh {
-    let turn = |step: u32, steps: u32| (std::f32::consts::TAU * step as f32 / steps as f32).sin_cos();
-    grid(rings, sides, |column, row| {
-        let uv = Vec2::new(column as f32 / rings as f32, row as f32 / sides as f32);
-        let ((sa, ca), (sc, cc)) = (turn(column % rings, rings), turn(row % sides, sides));
-        let normal = Vec3::new(ca * cc, sa * cc, sc);
-        (Vec3::new(ca, sa, 0.0) + 0.3 * normal, normal, uv)
-    })
+    dressed(textured::torus(rings, sides))
 }
 
-/// A box of six faces, each of them a grid with its own normal and texture.
 fn hard_box(cells: u32) -> Mesh {
-    let mut all = Mesh { uvs: vec![Vec::new()], ..Mesh::default() };
-    for (normal, across) in [(Vec3::X, Vec3::Y), (Vec3::Y, Vec3::Z), (Vec3::Z, Vec3::X)] {
-        for side in [1.0, -1.0] {
-            let up = side * normal.cross(across);
-            let face = grid(cells, cells, |column, row| {
-                let uv = Vec2::new(column as f32, row as f32) / cells as f32;
-                let bump = normal * 0.1 * (uv.x * (1.0 - uv.x) * uv.y * (1.0 - uv.y));
-                let at = side * (normal + bump) + (2.0 * uv.x - 1.0) * across + (2.0 * uv.y - 1.0) * up;
-                (at, side * normal, uv)
-            });
-            append(&mut all, face);
-        }
-    }
-    weld(&mut all);
-    all
-}
-
-/// Adds a mesh with its groups.
-fn append(all: &mut Mesh, part: Mesh) {
-    let [positions, wedges] = [all.positions.len() as u32, all.wedges.len() as u32];
-    let triangles = all.triangles.len();
-    all.positions.extend(part.positions);
-    all.wedges.extend(part.wedges.iter().map(|p| p + positions));
-    all.normals.extend(part.normals);
-    all.colours.extend(part.colours);
-    all.tangents.extend(part.tangents);
-    all.uvs[0].extend(&part.uvs[0]);
-    all.triangles.extend(part.triangles.iter().map(|t| t.map(|w| w + wedges)));
-    let moved =
-        |g: Group| Group { triangles: g.triangles.start + triangles..g.triangles.end + triangles, ..g };
-    all.groups.extend(part.groups.into_iter().map(moved));
+    dressed(textured::hard_box(cells, 0.1))
 }
 
 // -- chains

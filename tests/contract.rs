@@ -4,15 +4,15 @@ mod plain;
 mod scenes;
 
 use lod_budget::check::{self, Promise, Replay};
-use lod_budget::frame::{Change, FrameReport, GroupId};
+use lod_budget::frame::GroupId;
 use lod_budget::runtime::{FrameInput, Runtime, RuntimeOptions};
-use lod_budget::scene::{ObjectId, Objects};
+use lod_budget::scene::Objects;
 use lod_budget::select::{Reactive, ReactiveOptions, ScreenSize, Selector};
-use lod_budget::transition::Shown;
 use plain::{Checked, size_options};
 use proptest::prelude::*;
 use scenes::{
-    BudgetOf, Cameras, POLICIES, Policy, Scene, budget, film, inputs, measured, options, reorder, shuffled,
+    BudgetOf, Cameras, POLICIES, Policy, Record, Scene, budget, film, inputs, measured, options, reorder,
+    shuffled,
 };
 
 /// Everything a run depends on.
@@ -82,29 +82,6 @@ fn trial() -> impl Strategy<Value = Trial> {
             edits,
         },
     )
-}
-
-/// What is remembered of a frame.
-#[derive(Clone, Debug, PartialEq)]
-struct Record {
-    changes: Vec<Change>,
-    report: FrameReport,
-    shown: Vec<(GroupId, ObjectId, Shown)>,
-}
-
-impl Record {
-    fn of(runtime: &Runtime, objects: &Objects) -> Self {
-        // How much culling looks at depends on the slots.
-        let report =
-            FrameReport { visited_nodes: 0, tested_objects: 0, worth_too_little: 0, ..*runtime.report() };
-        let groups = (0..4).map(GroupId);
-        let mut shown: Vec<_> = groups
-            .flat_map(|group| runtime.shown_slots(group).map(move |(slot, shown)| (group, slot, shown)))
-            .map(|(group, slot, shown)| (group, objects.id_of(slot).unwrap_or_default(), shown))
-            .collect();
-        shown.sort_by_key(|&(group, id, _)| (group, id));
-        Self { changes: runtime.changes().to_vec(), report, shown }
-    }
 }
 
 impl Trial {

@@ -10,7 +10,7 @@ use glam::{Mat3, Quat, Vec2, Vec3};
 use lod_budget::bake::deviation::{Options, deviation};
 use lod_budget::bake::hierarchy;
 use lod_budget::bake::shapes::{icosphere, terrain, torus_knot};
-use lod_budget::bake::simplify::{Contraction, GarlandHeckbert, quietly};
+use lod_budget::bake::simplify::{Contraction, GarlandHeckbert, Topology, quietly};
 use lod_budget::bake::{Mesh, Surface};
 use lod_budget::hierarchy::{Budget, Cut, Hierarchy};
 use lod_budget::select::{Coarsest, Finest, Selector};
@@ -90,14 +90,14 @@ fn dependencies(hierarchy: &Hierarchy) -> Vec<BTreeSet<usize>> {
 
 /// What stays the same of a mesh whatever is done to it.
 #[derive(Debug, PartialEq)]
-struct Topology {
+struct Shape {
     euler: i64,
     borders: usize,
 }
 
 /// Refuses edges that more than one triangle goes along in the same direction. `count_borders` is off for meshes whose
 /// border has fewer and fewer edges.
-fn topology(triangles: &[[u32; 3]], nodes: &mut Vec<u32>, edges: &mut Vec<u64>) -> Topology {
+fn topology(triangles: &[[u32; 3]], nodes: &mut Vec<u32>, edges: &mut Vec<u64>) -> Shape {
     edges.clear();
     nodes.clear();
     for &[a, b, c] in triangles {
@@ -115,7 +115,7 @@ fn topology(triangles: &[[u32; 3]], nodes: &mut Vec<u32>, edges: &mut Vec<u64>) 
     edges.iter_mut().for_each(|edge| *edge >>= 1);
     edges.dedup();
     let (all, corners) = (edges.len() as i64, nodes.len() as i64);
-    Topology { euler: corners - all + triangles.len() as i64, borders: (2 * all - directed) as usize }
+    Shape { euler: corners - all + triangles.len() as i64, borders: (2 * all - directed) as usize }
 }
 
 fn normal(positions: &[Vec3], triangle: [u32; 3]) -> Vec3 {
@@ -224,6 +224,41 @@ fn a_walk_over_a_small_terrain_beside_its_twin() {
 #[test]
 fn a_walk_around_and_through_a_knot_beside_its_twin() {
     walk(torus_knot(60, 8), 1_000, false, true);
+}
+
+/// Eight rows of octahedra that touch at their tips.
+fn beads() -> Surface {
+    let mut all = Surface::default();
+    for (row, bead) in (0..8).flat_map(|row| (0..6).map(move |bead| (row, bead))) {
+        let first = all.positions.len() as u32;
+        let center = Vec3::new(2.0 * bead as f32, 3.0 * row as f32, (row * bead) as f32 / 7.0);
+        let corners = [Vec3::NEG_X, Vec3::X, Vec3::NEG_Y, Vec3::Y, Vec3::NEG_Z * 0.5, Vec3::Z * 0.7];
+        all.positions.extend(corners.map(|corner| center + corner));
+        let tip = |corner: u32| if bead > 0 && corner == 0 { first - 5 } else { first + corner };
+        let faces = [[1, 3, 5], [3, 0, 5], [0, 2, 5], [2, 1, 5], [3, 1, 4], [0, 3, 4], [2, 0, 4], [1, 2, 4]];
+        all.triangles.extend(faces.map(|face| face.map(tip)));
+    }
+    all
+}
+
+/// Where a part goes altogether, its last vertices are no longer neighbours: their order has to be known all the same.
+#[test]
+fn parts_that_go_come_back_in_order() {
+    for pairs in [0.0, 3.0] {
+        let method = GarlandHeckbert { topology: Topology::Free, pairs, ..GarlandHeckbert::default() };
+        let hierarchy = hierarchy::of(&Mesh::from(beads()), &method, &mut quietly).expect("a good shape");
+        let below = dependencies(&hierarchy);
+        let bounds = hierarchy.bounds();
+        let (low, high) = (bounds.center - bounds.radius, bounds.center + bounds.radius);
+        let mut walk = Walk { rng: Pcg64Mcg::seed_from_u64(1), eye: high, target: low, low, high };
+        let mut cut = Cut::new(Arc::new(hierarchy));
+        for _ in 0..200 {
+            let triangles = walk.rng.random_range(0..cut.hierarchy().triangles());
+            let report = cut.update(&[walk.step()], &Budget::triangles(triangles));
+            assert!(report.triangles <= triangles.max(cut.hierarchy().base_triangles()), "{report:?}");
+            check_against_replay(&cut, &below);
+        }
+    }
 }
 
 #[test]

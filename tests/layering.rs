@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of `src`, in order: each may name those above it and itself.
-const ROOMS: [&str; 20] = [
+const ROOMS: [&str; 21] = [
     "kernel",
     // vocabulary
     "bounds",
@@ -27,6 +27,7 @@ const ROOMS: [&str; 20] = [
     "check",
     // bridges and tools
     "ecs",
+    "gltf",
     "files",
     "bake",
     "sim",

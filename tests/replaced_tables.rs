@@ -5,13 +5,13 @@ mod scenes;
 
 use lod_budget::bounds::Sphere;
 use lod_budget::check::{Promise, Replay, Violation};
-use lod_budget::frame::{Change, FrameReport, GroupId};
 use lod_budget::runtime::{FrameInput, Runtime, RuntimeOptions};
-use lod_budget::scene::{ObjectId, Objects, TableId};
+use lod_budget::scene::{Objects, TableId};
 use lod_budget::table::{LevelRecord, LodTable};
-use lod_budget::transition::Shown;
 use proptest::prelude::*;
-use scenes::{BudgetOf, Cameras, POLICIES, Policy, Scene, budget, film, inputs, measured, options, reorder};
+use scenes::{
+    BudgetOf, Cameras, POLICIES, Policy, Record, Scene, budget, film, inputs, measured, options, reorder,
+};
 
 /// Everything a run depends on.
 #[derive(Clone, Debug)]
@@ -134,27 +134,6 @@ impl Trial {
             }
         }
         Ok(records)
-    }
-}
-
-/// What is remembered of a frame.
-#[derive(Clone, Debug, PartialEq)]
-struct Record {
-    changes: Vec<Change>,
-    report: FrameReport,
-    shown: Vec<(GroupId, ObjectId, Shown)>,
-}
-
-impl Record {
-    fn of(runtime: &Runtime, objects: &Objects) -> Self {
-        // How much culling looks at depends on what it was told of the tables before.
-        let report =
-            FrameReport { visited_nodes: 0, tested_objects: 0, worth_too_little: 0, ..*runtime.report() };
-        let of_group = |group| runtime.shown_slots(group).map(move |(slot, shown)| (group, slot, shown));
-        let named = |(group, slot, shown)| (group, objects.id_of(slot).unwrap_or_default(), shown);
-        let mut shown: Vec<_> = (0..4).map(GroupId).flat_map(of_group).map(named).collect();
-        shown.sort_by_key(|&(group, id, _)| (group, id));
-        Self { changes: runtime.changes().to_vec(), report, shown }
     }
 }
 

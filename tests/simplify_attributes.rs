@@ -1,82 +1,23 @@
 //! Attributes, seams and materials through a simplification.
 #![cfg(feature = "bake")]
 
+mod textured;
+
 use std::collections::BTreeMap;
 
 use glam::{Vec2, Vec3};
 use lod_budget::bake::simplify::{
     Attributes, GarlandHeckbert, Placement, Simplified, Simplifier, Stopped, Target, Task, Topology, quietly,
 };
-use lod_budget::bake::weld::weld;
 use lod_budget::bake::{Group, Mesh};
 use proptest::prelude::*;
+use textured::{grid, hard_box, torus};
 
 fn simplify(method: &GarlandHeckbert, mesh: &Mesh, triangles: usize) -> Simplified {
     let task = Task::new(mesh, Target::triangles(triangles));
     let simplified = method.simplify(&task, &mut quietly).expect("the task keeps the rules");
     assert_eq!(simplified.mesh.check(), Ok(()));
     simplified
-}
-
-/// A grid of `columns` by `rows` cells, its corners placed and given attributes by what is asked for, welded.
-fn grid(columns: u32, rows: u32, corner: impl Fn(u32, u32) -> (Vec3, Vec3, Vec2)) -> Mesh {
-    let mut mesh = Mesh { uvs: vec![Vec::new()], ..Mesh::default() };
-    for (row, column) in (0..=rows).flat_map(|row| (0..=columns).map(move |column| (row, column))) {
-        let (position, normal, uv) = corner(column, row);
-        mesh.wedges.push(mesh.positions.len() as u32);
-        mesh.positions.push(position);
-        mesh.normals.push(normal);
-        mesh.uvs[0].push(uv);
-    }
-    for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
-        let [a, b] = [row * (columns + 1) + column, (row + 1) * (columns + 1) + column];
-        mesh.triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
-    }
-    mesh.groups.push(Group { triangles: 0..mesh.triangles.len(), ..Group::default() });
-    weld(&mut mesh);
-    mesh
-}
-
-/// A torus with smooth normals, whose texture coordinates go once around either way: two seams.
-fn textured_torus(rings: u32, sides: u32) -> Mesh {
-    grid(rings, sides, |column, row| {
-        let uv = Vec2::new(column as f32 / rings as f32, row as f32 / sides as f32);
-        // So that both ends of the grid are the same to the last bit.
-        let [around, across] = [column % rings, row % sides];
-        let [sa, ca] = turn(around, rings);
-        let [sc, cc] = turn(across, sides);
-        let normal = Vec3::new(ca * cc, sa * cc, sc);
-        (Vec3::new(ca, sa, 0.0) + 0.3 * normal, normal, uv)
-    })
-}
-
-fn turn(step: u32, steps: u32) -> [f32; 2] {
-    let (sin, cos) = (std::f32::consts::TAU * step as f32 / steps as f32).sin_cos();
-    [sin, cos]
-}
-
-/// A box of six faces, each of them a grid with its own normal and texture.
-fn hard_box(cells: u32) -> Mesh {
-    let mut all = Mesh { uvs: vec![Vec::new()], ..Mesh::default() };
-    for (normal, across) in [(Vec3::X, Vec3::Y), (Vec3::Y, Vec3::Z), (Vec3::Z, Vec3::X)] {
-        for side in [1.0, -1.0] {
-            let up = side * normal.cross(across);
-            let face = grid(cells, cells, |column, row| {
-                let uv = Vec2::new(column as f32, row as f32) / cells as f32;
-                let at = side * normal + (2.0 * uv.x - 1.0) * across + (2.0 * uv.y - 1.0) * up;
-                (at, side * normal, uv)
-            });
-            let [positions, wedges] = [all.positions.len() as u32, all.wedges.len() as u32];
-            all.positions.extend(face.positions);
-            all.wedges.extend(face.wedges.iter().map(|p| p + positions));
-            all.normals.extend(face.normals);
-            all.uvs[0].extend(&face.uvs[0]);
-            all.triangles.extend(face.triangles.iter().map(|t| t.map(|w| w + wedges)));
-        }
-    }
-    all.groups.push(Group { triangles: 0..all.triangles.len(), ..Group::default() });
-    weld(&mut all);
-    all
 }
 
 /// Per directed edge of positions, the wedges at its ends.
@@ -88,7 +29,7 @@ fn sides(mesh: &Mesh) -> BTreeMap<[u32; 2], [u32; 2]> {
 
 #[test]
 fn a_texture_stays_where_it_was_and_its_seams_stay_whole() {
-    let torus = textured_torus(96, 32);
+    let torus = torus(96, 32);
     let shares = [2, 4, 8];
     let targets = shares.map(|share| Target::triangles(torus.triangles.len() / share));
     let task = Task::new(&torus, targets[0]);
@@ -126,7 +67,7 @@ fn a_texture_stays_where_it_was_and_its_seams_stay_whole() {
 /// What is contracted at once, and what goes on from where a level stopped, is the same.
 #[test]
 fn a_chain_is_its_levels_one_by_one() {
-    let torus = textured_torus(48, 16);
+    let torus = torus(48, 16);
     let targets = [700, 300, 300, 100, 500].map(Target::triangles);
     let method = GarlandHeckbert::default();
     let chain = method.chain(&Task::new(&torus, targets[0]), &targets, &mut quietly).expect("a good task");
@@ -137,7 +78,7 @@ fn a_chain_is_its_levels_one_by_one() {
 
 #[test]
 fn a_box_of_six_charts_becomes_twelve_triangles() {
-    let mesh = hard_box(8);
+    let mesh = hard_box(8, 0.0);
     assert_eq!((mesh.triangles.len(), mesh.positions.len(), mesh.wedges.len()), (768, 386, 486));
     let level = simplify(&GarlandHeckbert::default(), &mesh, 12).mesh;
     assert_eq!((level.triangles.len(), level.positions.len(), level.wedges.len()), (12, 8, 24));
@@ -182,7 +123,7 @@ fn materials_keep_their_border() {
 
 #[test]
 fn ignored_attributes_go_along_and_the_shape_is_as_if_there_were_none() {
-    let torus = textured_torus(48, 16);
+    let torus = torus(48, 16);
     let bare = Mesh::from(torus.surface());
     let method = GarlandHeckbert { attributes: Attributes::IGNORED, ..Default::default() };
     let [textured, plain] = [&torus, &bare].map(|mesh| simplify(&method, mesh, 300));
@@ -193,7 +134,7 @@ fn ignored_attributes_go_along_and_the_shape_is_as_if_there_were_none() {
 
 #[test]
 fn end_points_keep_their_attributes_bit_by_bit() {
-    let torus = textured_torus(24, 12);
+    let torus = torus(24, 12);
     let method = GarlandHeckbert { placement: Placement::Endpoint, ..Default::default() };
     let level = simplify(&method, &torus, 200);
     for (wedge, &position) in level.mesh.wedges.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! A procedural terrain.
 
-use glam::{Vec2, Vec3};
-use lod_budget::bake::Surface;
+use glam::Vec2;
+use lod_budget::bake::{Surface, shapes};
 
 /// How many cells of the mesh the finest bump is wide, and of how many bumps the coarsest octave is on a side.
 const FINEST: u32 = 4;
@@ -21,17 +21,9 @@ pub fn land(side: u32) -> Surface {
     let height = |at: Vec2| -> f32 {
         (0..octaves).map(|o| RELIEF * FALL.powi(o as i32) * noise(at * (COARSEST << o) as f32, o)).sum()
     };
-    let place = |index: u32| {
-        let at = Vec2::new((index % (side + 1)) as f32, (index / (side + 1)) as f32) / side as f32;
-        at.extend(height(at))
-    };
-    let quad = |index: u32| {
-        let corner = index / side * (side + 1) + index % side;
-        let [a, b, c, d] = [0, 1, side + 1, side + 2].map(|step| corner + step);
-        [[a, b, d], [a, d, c]]
-    };
-    let positions: Vec<Vec3> = (0..(side + 1).pow(2)).map(place).collect();
-    Surface { positions, triangles: (0..side.pow(2)).flat_map(quad).collect() }
+    let mut land = shapes::terrain(side, 0);
+    land.positions.iter_mut().for_each(|p| p.z = height(p.truncate()));
+    land
 }
 
 /// Values in [-1, 1] at whole numbers, smoothly blended between.

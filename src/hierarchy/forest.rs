@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::takers::Takers;
 use super::{Cone, Flaw, NONE, Part};
 use crate::bounds::{Aabb, Sphere};
 
@@ -49,6 +50,7 @@ pub struct Hierarchy {
     middles: Vec<u32>,
     /// Per node, the operation that contracts it.
     parents: Vec<u32>,
+    takers: Takers,
     bounds: Sphere,
 }
 
@@ -64,12 +66,15 @@ impl Hierarchy {
             firsts: Vec::new(),
             middles: Vec::new(),
             parents: vec![NONE; parts.positions.len()],
+            takers: Takers::default(),
             bounds: Aabb::around(parts.positions.iter().copied()).sphere(),
             parts,
         };
         hierarchy.check_counts()?;
         let spans = hierarchy.link()?;
         hierarchy.check_triangles(&spans)?;
+        let Parts { positions, apexes, .. } = &hierarchy.parts;
+        hierarchy.takers = Takers::new(positions.len(), apexes, &hierarchy.firsts);
         Ok(hierarchy)
     }
 
@@ -125,6 +130,17 @@ impl Hierarchy {
     /// The triangles that go with an operation.
     pub(super) fn going(&self, operation: u32) -> std::ops::Range<u32> {
         self.firsts[operation as usize]..self.firsts[operation as usize + 1]
+    }
+
+    /// Per triangle that goes with an operation, the node that its third corner is by then.
+    pub(super) fn apexes(&self, operation: u32) -> &[u32] {
+        let going = self.going(operation);
+        &self.parts.apexes[going.start as usize..going.end as usize]
+    }
+
+    /// The operations that take a triangle whose third corner is a node by then, ascending.
+    pub(super) fn takers(&self, node: u32) -> &[u32] {
+        self.takers.of(node)
     }
 
     /// The end of an operation that a leaf below it is below.

@@ -7,13 +7,15 @@
 //! none is turned over that the simplifier did not turn over (L. De Floriani, P. Magillo, E. Puppo, "Efficient
 //! implementation of multi-triangulations", 1998).
 //!
-//! Nothing says in memory what rests on what: nodes are numbered in the order in which they were made, and a vertex
+//! Little says in memory what rests on what: nodes are numbered in the order in which they were made, and a vertex
 //! may be split when it is younger than all its neighbours, two may be contracted when no neighbour has to be
-//! contracted first (J. El-Sana, A. Varshney, "Generalized view-dependent simplification", 1999).
+//! contracted first (J. El-Sana, A. Varshney, "Generalized view-dependent simplification", 1999). That is not enough
+//! where vertices are no longer neighbours once the triangles between them have gone, as the last ones of a part have:
+//! therefore each vertex also knows the operations that took a triangle of it.
 //!
 //! | | |
 //! |---|---|
-//! | [`Hierarchy`] | what is baked, and never changes: some 100 bytes a vertex |
+//! | [`Hierarchy`] | what is baked, and never changes: some 120 bytes a vertex |
 //! | [`Cut`] | what is shown, changed a little from frame to frame |
 //! | [`Budget`], [`Report`] | what an update is given and what it says |
 //! | [`Cone`] | which way errors point |
@@ -31,6 +33,7 @@ mod cut;
 mod error;
 mod forest;
 mod offer;
+mod takers;
 
 pub use cone::Cone;
 pub use cut::{Budget, Cut, Report};

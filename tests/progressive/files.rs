@@ -20,6 +20,7 @@ fn use_all(mesh: &Progressive) {
     let mut cursor = Cursor::new(mesh);
     loop {
         assert_eq!(cursor.mesh(mesh).check(), Ok(()));
+        assert!(cursor.positions().iter().all(|p| p.is_finite()));
         match cursor.refine(mesh) {
             Ok(true) => {}
             Ok(false) => break,
@@ -77,6 +78,28 @@ fn what_is_no_such_file_is_refused_by_name_and_byte() {
     later[7] = 1;
     later[20] ^= 4;
     assert_eq!(refused(&later), "torn.lodp: byte 8: a part must be as its checksum says");
+}
+
+#[test]
+fn positions_are_finite_at_the_base_and_after_splits() {
+    let whole = progressive(&bumped(icosphere(0), 0.1, 5).into(), GarlandHeckbert::default(), 0);
+    let changes = (8..whole.bytes().len()).flat_map(|at| (0..=255).step_by(15).map(move |to| (at, to)));
+    let rules: Vec<(bool, String)> = changes
+        .filter_map(|(at, to)| {
+            let mut bytes = whole.bytes().to_vec();
+            bytes[at] = to;
+            sum_up(&mut bytes);
+            let read = Progressive::from_bytes(bytes, "torn.lodp");
+            read.map(|(mesh, _)| {
+                use_all(&mesh);
+                mesh.verify().err().map(|error| (true, error.rule))
+            })
+            .unwrap_or_else(|error| Some((false, error.rule)))
+        })
+        .collect();
+    for after_splits in [false, true] {
+        assert!(rules.contains(&(after_splits, "a position must be finite".into())), "{after_splits}");
+    }
 }
 
 #[test]

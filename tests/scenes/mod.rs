@@ -4,16 +4,16 @@ use glam::{Quat, Vec2, Vec3};
 use lod_budget::bounds::Sphere;
 use lod_budget::check::Promise;
 use lod_budget::cull::CullOptions;
-use lod_budget::frame::{FrameId, FrameTime, GroupId};
+use lod_budget::frame::{Change, FrameId, FrameReport, FrameTime, GroupId};
 use lod_budget::rate::{BenefitModel, CostModel, Stages};
-use lod_budget::runtime::{RuntimeOptions, ViewInput};
+use lod_budget::runtime::{Runtime, RuntimeOptions, ViewInput};
 use lod_budget::scene::{LevelRange, Object, ObjectId, Objects, Settings, TableId};
 use lod_budget::select::{
     Coarsest, Finest, FunkhouserSequin, Measure, Predictive, PredictiveOptions, Reactive, ScreenSize,
     ScreenSizeOptions, Selector,
 };
 use lod_budget::table::{Level, LevelRecord, LodTable};
-use lod_budget::transition::{TransitionKind, TransitionOptions};
+use lod_budget::transition::{Shown, TransitionKind, TransitionOptions};
 use lod_budget::view::{Projection, View, Window};
 use proptest::prelude::*;
 
@@ -359,4 +359,25 @@ pub fn measured(n: u64, predicted_us: &[f64], late: u64, ratio: f64) -> Vec<Fram
         _ => (predicted_us[frame as usize - 1] * ratio) as f32,
     };
     vec![FrameTime::busy(FrameId(frame + 1000), 5.0), FrameTime::busy(FrameId(frame), time_us)]
+}
+
+/// What is remembered of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    pub changes: Vec<Change>,
+    pub report: FrameReport,
+    pub shown: Vec<(GroupId, ObjectId, Shown)>,
+}
+
+impl Record {
+    /// How much culling looks at is left out: that depends on slots, and on what it was told of tables before.
+    pub fn of(runtime: &Runtime, objects: &Objects) -> Self {
+        let report =
+            FrameReport { visited_nodes: 0, tested_objects: 0, worth_too_little: 0, ..*runtime.report() };
+        let of_group = |group| runtime.shown_slots(group).map(move |(slot, shown)| (group, slot, shown));
+        let named = |(group, slot, shown)| (group, objects.id_of(slot).unwrap_or_default(), shown);
+        let mut shown: Vec<_> = (0..4).map(GroupId).flat_map(of_group).map(named).collect();
+        shown.sort_by_key(|&(group, id, _)| (group, id));
+        Self { changes: runtime.changes().to_vec(), report, shown }
+    }
 }

@@ -54,6 +54,8 @@ impl Split {
         let is_there = |&wedge: &u32| (wedge as usize) < wedges;
         let is_own =
             |position: u32| position == self.parent || !self.positions.is_empty() && position == first;
+        let moved = self.moved();
+        let position = |wedge: u32| self.position(state, &moved, wedge);
         let changes = |c: &Change| {
             let before = state.wedges.get(c.wedge as usize);
             before.is_some_and(|&at| !c.moves || at == self.parent && !self.positions.is_empty())
@@ -62,11 +64,11 @@ impl Split {
             Some("a wedge that changes must be there, and at the vertex if it leaves it")
         } else if !self.has_places(state, self.positions.len()) {
             Some("a new wedge must be at a position that is there")
-        } else if !self.corners.iter().all(|(_, w)| is_there(w) && is_own(self.position(state, *w))) {
+        } else if !self.corners.iter().all(|(_, w)| is_there(w) && is_own(position(*w))) {
             Some("a corner of the vertex must stay at it or go to the new one")
         } else if !self.triangles.as_flattened().iter().all(is_there) {
             Some("a corner must be one of the wedges that are there")
-        } else if !self.triangles.iter().all(|t| is_proper(t.map(|w| self.position(state, w)))) {
+        } else if !self.triangles.iter().all(|t| is_proper(t.map(position))) {
             Some("a triangle must have three positions")
         } else if state.triangles.len() + self.triangles.len() > MOST_TRIANGLES || wedges >= NONE as usize {
             Some("there must not be more than 268435456 triangles")
@@ -81,26 +83,47 @@ impl Split {
         self.wedges.iter().all(|&position| (position as usize) < positions)
     }
 
+    /// The wedges that go from the parent to the first new position, ascending: a record may have a great many.
+    fn moved(&self) -> Vec<u32> {
+        let mut moved: Vec<u32> = self.changed.iter().filter(|c| c.moves).map(|c| c.wedge).collect();
+        moved.sort_unstable();
+        moved
+    }
+
     /// Where a wedge is after the split.
-    fn position(&self, state: &State, wedge: u32) -> u32 {
+    fn position(&self, state: &State, moved: &[u32], wedge: u32) -> u32 {
         match self.wedges.get((wedge as usize).wrapping_sub(state.wedges.len())) {
             Some(&position) => position,
-            None if self.changed.contains(&Change { wedge, moves: true }) => state.positions.len() as u32,
+            None if moved.binary_search(&wedge).is_ok() => state.positions.len() as u32,
             None => state.wedges[wedge as usize],
         }
     }
 
-    /// The wedge of the mesh before that a new wedge likely resembles: that of a corner that becomes its, or else one at
-    /// its position, or else one of the parent.
-    pub(super) fn model(&self, state: &State, added: usize) -> Option<u32> {
-        let wedge = (state.wedges.len() + added) as u32;
-        let corner = self.corners.iter().find(|&&(_, w)| w == wedge).map(|&(corner, _)| corner);
+    /// Whether the vertex and all that is new are somewhere.
+    pub(super) fn is_finite(&self) -> bool {
+        self.place.is_finite() && self.positions.iter().all(|place| place.is_finite())
+    }
+
+    /// Per row, the wedge of the mesh before that likely resembles it: a changed wedge itself; for a new one that of a
+    /// corner that becomes its, or else one at its position, or else one of the parent.
+    pub(super) fn models(&self, state: &State) -> Vec<Option<u32>> {
+        let first_new = state.wedges.len() as u32;
+        let mut corner_of = vec![None; self.wedges.len()];
+        for &(corner, wedge) in self.corners.iter().rev() {
+            if let Some(own) = corner_of.get_mut(wedge.wrapping_sub(first_new) as usize) {
+                *own = Some(corner);
+            }
+        }
         let of = |position: u32| {
             let is_there = (position as usize) < state.positions.len();
             is_there.then(|| state.fan(position).next()).flatten()
         };
-        let corner = corner.or_else(|| of(self.wedges[added])).or_else(|| of(self.parent));
-        corner.map(|corner| state.wedge(corner))
+        let model = |(&position, corner): (&u32, Option<u32>)| {
+            let corner = corner.or_else(|| of(position)).or_else(|| of(self.parent));
+            corner.map(|corner| state.wedge(corner))
+        };
+        let changed = self.changed.iter().map(|change| Some(change.wedge));
+        changed.chain(self.wedges.iter().zip(corner_of).map(model)).collect()
     }
 }
 

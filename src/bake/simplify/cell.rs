@@ -15,6 +15,7 @@ use super::cluster::octree::{DEPTH, code, corner_of, shared_depth};
 use super::planes::Planes;
 use super::queue::Queue;
 use super::star::Star;
+use super::steps::{Steps, step_by_step};
 use super::workpiece::Workpiece;
 use super::{Progress, Simplified, Simplifier, SimplifyError, Task, Topology};
 
@@ -40,12 +41,7 @@ impl Simplifier for CellCollapse {
         task: &Task,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Simplified, SimplifyError> {
-        task.check()?;
-        let mut piece = Workpiece::new(task);
-        let mut cells = Cells::new(self, &piece);
-        let stopped = piece.run(progress, |piece| cells.step(piece));
-        let error = piece.in_units(cells.error);
-        Ok(piece.finish(error, stopped))
+        step_by_step(task, progress, |piece| Cells::new(self, piece))
     }
 }
 
@@ -86,6 +82,24 @@ struct Cells<'a> {
     /// Per vertex.
     planes: Vec<Planes>,
     error: f64,
+}
+
+impl Steps for Cells<'_> {
+    /// Collapses the cell that costs least.
+    fn step(&mut self, piece: &mut Workpiece) -> ControlFlow<()> {
+        let Some((_, cell)) = self.queue.pop() else { return ControlFlow::Break(()) };
+        let error = self.cells[cell as usize].error;
+        let left = self.left(piece, cell);
+        let is_kept = || self.method.topology == Topology::Free || Star::new(piece, &left).is_disc(piece);
+        if piece.in_units(error) <= piece.task.target.error && (left.len() < 2 || is_kept()) {
+            self.collapse(piece, cell, &left);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn error(&self) -> f64 {
+        self.error
+    }
 }
 
 impl<'a> Cells<'a> {
@@ -164,18 +178,6 @@ impl<'a> Cells<'a> {
         let Cell { first, end, .. } = self.cells[cell as usize];
         let members = self.order[first as usize..end as usize].iter().copied();
         members.filter(|&v| !piece.fans.of(v).is_empty()).collect()
-    }
-
-    /// Collapses the cell that costs least.
-    fn step(&mut self, piece: &mut Workpiece) -> ControlFlow<()> {
-        let Some((_, cell)) = self.queue.pop() else { return ControlFlow::Break(()) };
-        let error = self.cells[cell as usize].error;
-        let left = self.left(piece, cell);
-        let is_kept = || self.method.topology == Topology::Free || Star::new(piece, &left).is_disc(piece);
-        if piece.in_units(error) <= piece.task.target.error && (left.len() < 2 || is_kept()) {
-            self.collapse(piece, cell, &left);
-        }
-        ControlFlow::Continue(())
     }
 
     /// Merges vertices into the first, two by two, so that many cost no square of their number.

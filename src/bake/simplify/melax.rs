@@ -14,6 +14,7 @@ use glam::DVec3;
 
 use super::link::others;
 use super::queue::Queue;
+use super::steps::{Steps, step_by_step};
 use super::workpiece::Workpiece;
 use super::{Progress, Simplified, Simplifier, SimplifyError, Task, Topology};
 
@@ -44,12 +45,7 @@ impl Simplifier for Melax {
         task: &Task,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Simplified, SimplifyError> {
-        task.check()?;
-        let mut piece = Workpiece::new(task);
-        let mut collapses = Collapses::new(self, &piece);
-        let stopped = piece.run(progress, |piece| collapses.step(piece));
-        let error = piece.in_units(collapses.error);
-        Ok(piece.finish(error, stopped))
+        step_by_step(task, progress, |piece| Collapses::new(self, piece))
     }
 }
 
@@ -87,6 +83,29 @@ struct Collapses<'a> {
     ring: Vec<u32>,
 }
 
+impl Steps for Collapses<'_> {
+    /// Collapses the vertex that costs least, if it may; if not, has it choose again.
+    fn step(&mut self, piece: &mut Workpiece) -> ControlFlow<()> {
+        let Some((cost, vertex)) = self.queue.pop() else { return ControlFlow::Break(()) };
+        let choice = self.choices[vertex as usize];
+        if choice.cost.to_bits() != cost.to_bits() || choice == Choice::NONE {
+            return ControlFlow::Continue(());
+        }
+        let drift = self.drift(piece, vertex, choice.to);
+        let is_in_reach = piece.in_units(drift) <= piece.task.target.error;
+        if is_in_reach && self.may_collapse(piece, vertex, choice.to) {
+            self.collapse(piece, vertex, choice.to, drift);
+        } else {
+            self.choose(piece, vertex, Some(choice));
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn error(&self) -> f64 {
+        self.error
+    }
+}
+
 impl<'a> Collapses<'a> {
     fn new(method: &'a Melax, piece: &Workpiece) -> Self {
         let count = piece.positions.len();
@@ -105,23 +124,6 @@ impl<'a> Collapses<'a> {
             collapses.choose(piece, vertex, None);
         }
         collapses
-    }
-
-    /// Collapses the vertex that costs least, if it may; if not, has it choose again.
-    fn step(&mut self, piece: &mut Workpiece) -> ControlFlow<()> {
-        let Some((cost, vertex)) = self.queue.pop() else { return ControlFlow::Break(()) };
-        let choice = self.choices[vertex as usize];
-        if choice.cost.to_bits() != cost.to_bits() || choice == Choice::NONE {
-            return ControlFlow::Continue(());
-        }
-        let drift = self.drift(piece, vertex, choice.to);
-        let is_in_reach = piece.in_units(drift) <= piece.task.target.error;
-        if is_in_reach && self.may_collapse(piece, vertex, choice.to) {
-            self.collapse(piece, vertex, choice.to, drift);
-        } else {
-            self.choose(piece, vertex, Some(choice));
-        }
-        ControlFlow::Continue(())
     }
 
     /// Chooses the cheapest collapse of a vertex that is dearer than `above`, and puts it into the queue.

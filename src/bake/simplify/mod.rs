@@ -41,6 +41,7 @@ mod quadric;
 mod queue;
 mod rebuild;
 mod star;
+mod steps;
 mod triangle;
 mod workpiece;
 
@@ -143,6 +144,12 @@ impl<'a> Task<'a> {
             Some(vertex) => Err(SimplifyError::NotFinite { triangle, vertex }),
             None => Ok(()),
         }
+    }
+
+    /// The triangles that use three positions, and which these are.
+    fn proper_triangles(&self) -> (Vec<u32>, Vec<[u32; 3]>) {
+        let all = (0..self.mesh.triangles.len()).map(|t| (t as u32, self.mesh.corners(t)));
+        all.filter(|&(_, [a, b, c])| a != b && b != c && c != a).unzip()
     }
 
     fn is_locked(&self, vertex: usize) -> bool {

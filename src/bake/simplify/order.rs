@@ -21,20 +21,21 @@ pub(super) fn along_curve(positions: &[Vec3], triangles: impl Iterator<Item = [u
     let extent = (bounds.max.as_dvec3() - corner).max_element().max(f64::MIN_POSITIVE);
     let cells = f64::from((1u32 << BITS) - 1) / extent;
     let code = |v: u32| {
-        let cell = ((positions[v as usize].as_dvec3() - corner) * cells).as_uvec3();
+        let cell = ((positions[v as usize].as_dvec3() - corner) * cells).as_u64vec3();
         spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2
     };
-    let mut keys: Vec<u64> = used().map(|v| u64::from(code(v)) << 32 | u64::from(v)).collect();
+    let mut keys: Vec<u64> = used().map(|v| code(v) << 32 | u64::from(v)).collect();
     keys.sort_unstable();
     keys.into_iter().map(|key| key as u32).collect()
 }
 
-/// Two zero bits before every bit of a number below 2¹⁰.
-fn spread(x: u32) -> u32 {
-    let x = (x | x << 16) & 0x0300_00ff;
-    let x = (x | x << 8) & 0x0300_f00f;
-    let x = (x | x << 4) & 0x030c_30c3;
-    (x | x << 2) & 0x0924_9249
+/// Two zero bits before every bit of a number below 2²¹.
+pub(super) fn spread(x: u64) -> u64 {
+    let x = (x | x << 32) & 0x001f_0000_0000_ffff;
+    let x = (x | x << 16) & 0x001f_0000_ff00_00ff;
+    let x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
+    let x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
+    (x | x << 2) & 0x1249_2492_4924_9249
 }
 
 /// Triangles in the order of their lowest corners, ties by index: the indices of all, from the corners. O(n).
@@ -62,7 +63,7 @@ mod tests {
 
     #[test]
     fn spread_leaves_two_zeros_before_every_bit() {
-        for bit in 0..BITS {
+        for bit in 0..21 {
             assert_eq!(spread(1 << bit), 1 << (3 * bit));
         }
     }

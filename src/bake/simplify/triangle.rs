@@ -15,6 +15,7 @@ use glam::DVec3;
 use super::planes::Planes;
 use super::queue::Queue;
 use super::star::Star;
+use super::steps::{Steps, step_by_step};
 use super::workpiece::{GONE, Workpiece};
 use super::{Progress, Simplified, Simplifier, SimplifyError, Task, Topology};
 
@@ -51,12 +52,7 @@ impl Simplifier for TriangleCollapse {
         task: &Task,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Simplified, SimplifyError> {
-        task.check()?;
-        let mut piece = Workpiece::new(task);
-        let mut contractions = Contractions::new(self, &piece);
-        let stopped = piece.run(progress, |piece| contractions.step(piece));
-        let error = piece.in_units(contractions.error);
-        Ok(piece.finish(error, stopped))
+        step_by_step(task, progress, |piece| Contractions::new(self, piece))
     }
 }
 
@@ -73,6 +69,28 @@ struct Contractions<'a> {
     /// How many triangles were in the queue, and went since.
     swept: usize,
     since_sweep: usize,
+}
+
+impl Steps for Contractions<'_> {
+    /// Contracts the triangle that costs least, if that may be.
+    fn step(&mut self, piece: &mut Workpiece) -> ControlFlow<()> {
+        let Some((cost, triangle)) = self.queue.pop() else {
+            if self.since_sweep * WORTH_A_SWEEP <= self.swept {
+                return ControlFlow::Break(());
+            }
+            self.sweep(piece);
+            return ControlFlow::Continue(());
+        };
+        let corners = piece.triangles[triangle as usize];
+        if corners != GONE && self.costs[triangle as usize].to_bits() == cost.to_bits() {
+            self.try_contract(piece, corners);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn error(&self) -> f64 {
+        self.error
+    }
 }
 
 impl<'a> Contractions<'a> {
@@ -118,22 +136,6 @@ impl<'a> Contractions<'a> {
         let free = if least.distance(middle) <= 2.0 * reach { least } else { middle };
         let locked = corners.into_iter().find(|&v| piece.is_locked(v));
         (sum, locked.map_or(free, |v| piece.place(v)))
-    }
-
-    /// Contracts the triangle that costs least, if that may be.
-    fn step(&mut self, piece: &mut Workpiece) -> ControlFlow<()> {
-        let Some((cost, triangle)) = self.queue.pop() else {
-            if self.since_sweep * WORTH_A_SWEEP <= self.swept {
-                return ControlFlow::Break(());
-            }
-            self.sweep(piece);
-            return ControlFlow::Continue(());
-        };
-        let corners = piece.triangles[triangle as usize];
-        if corners != GONE && self.costs[triangle as usize].to_bits() == cost.to_bits() {
-            self.try_contract(piece, corners);
-        }
-        ControlFlow::Continue(())
     }
 
     fn try_contract(&mut self, piece: &mut Workpiece, corners: [u32; 3]) {

@@ -48,12 +48,7 @@ pub(super) struct Workpiece<'a> {
 impl<'a> Workpiece<'a> {
     pub(super) fn new(task: &'a Task) -> Self {
         let mesh = task.mesh;
-        let is_triangle = |&t: &u32| {
-            let [a, b, c] = mesh.corners(t as usize);
-            a != b && b != c && c != a
-        };
-        let old: Vec<u32> = (0..mesh.triangles.len() as u32).filter(is_triangle).collect();
-        let triangles: Vec<[u32; 3]> = old.iter().map(|&t| mesh.corners(t as usize)).collect();
+        let (old, triangles) = task.proper_triangles();
         let count = mesh.positions.len();
         Self {
             task,

@@ -9,6 +9,7 @@ use serde::Deserialize;
 use super::super::json::{Entry, Listed, parse};
 use super::super::{FileError, disk};
 use super::Refused;
+use crate::gltf::{broken_rule, parts};
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
@@ -60,48 +61,18 @@ impl Entry for json::buffer::View {
     const KIND: &'static str = "buffer view";
 }
 
-/// Required extensions that change neither counts nor bounds: compression (the accessors tell what comes out),
-/// images, lights, metadata. `KHR_materials_*` are fine as well.
-const HARMLESS: [&str; 17] = [
-    "EXT_lights_ies",
-    "EXT_lights_image_based",
-    "EXT_meshopt_compression",
-    "EXT_texture_avif",
-    "EXT_texture_procedurals",
-    "EXT_texture_webp",
-    "KHR_animation_pointer",
-    "KHR_draco_mesh_compression",
-    "KHR_lights_punctual",
-    "KHR_mesh_quantization",
-    "KHR_meshopt_compression",
-    "KHR_texture_basisu",
-    "KHR_texture_transform",
-    "KHR_xmp_json_ld",
-    "MSFT_lod",
-    "MSFT_packing_normalRoughnessMetallic",
-    "MSFT_texture_dds",
-];
+/// Required extensions of compression: the accessors tell what comes out.
+const COUNTED: [&str; 3] =
+    ["EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_meshopt_compression"];
 
 impl Document {
     pub(super) fn open(bytes: &[u8], file: &str) -> Result<Self, FileError> {
-        let json = match bytes.starts_with(b"glTF") {
-            true => json_chunk(bytes).map_err(|rule| FileError::whole(file, rule))?,
-            false => bytes,
-        };
+        let (json, _) = parts(bytes).map_err(|rule| FileError::whole(file, rule))?;
         let document: Self = parse(disk::text_of(json, file)?, file)?;
-        match document.broken_rule() {
+        match broken_rule(&document.asset.version, &document.extensions_required, &COUNTED) {
             Some(rule) => Err(FileError::whole(file, rule)),
             None => Ok(document),
         }
-    }
-
-    fn broken_rule(&self) -> Option<String> {
-        if !self.asset.version.starts_with("2.") {
-            return Some(format!("its asset.version must be 2.x, not {}", self.asset.version));
-        }
-        let harmless = |name: &str| HARMLESS.contains(&name) || name.starts_with("KHR_materials_");
-        let strange = self.extensions_required.iter().find(|name| !harmless(name))?;
-        Some(format!("it requires the extension {strange}, which is not supported"))
     }
 
     /// The nodes that the scene starts from; `None` where the file has no scene.
@@ -155,41 +126,4 @@ impl Document {
 
 fn called(kind: &str, index: usize, name: Option<&str>) -> String {
     name.map_or_else(|| format!("{kind} {index}"), |name| format!("{kind} {index} '{name}'"))
-}
-
-/// The JSON within a GLB: a header of 12 bytes (magic, version, length), then chunks (length, kind, bytes), JSON the
-/// first of them.
-fn json_chunk(bytes: &[u8]) -> Result<&[u8], String> {
-    let version = u32_at(bytes, 4).ok_or("it is cut off within its header")?;
-    if version != 2 {
-        return Err(format!("its GLB version must be 2, not {version}"));
-    }
-    let length = u32_at(bytes, 8).ok_or("it is cut off within its header")? as usize;
-    let bytes = bytes
-        .get(..length)
-        .ok_or_else(|| format!("it is cut off: its header says {length} bytes, it has {}", bytes.len()))?;
-    let (kind, json, mut rest) = split_chunk(bytes.get(12..).unwrap_or_default())?;
-    if kind != b"JSON" {
-        return Err("its first chunk must be JSON".to_owned());
-    }
-    while !rest.is_empty() {
-        (_, _, rest) = split_chunk(rest)?;
-    }
-    Ok(json)
-}
-
-type Chunk<'a> = (&'a [u8], &'a [u8], &'a [u8]);
-
-/// The first chunk's kind and bytes, and what follows.
-fn split_chunk(bytes: &[u8]) -> Result<Chunk<'_>, String> {
-    let cut = || "it is cut off within a chunk".to_owned();
-    let length = u32_at(bytes, 0).ok_or_else(cut)? as usize;
-    let kind = bytes.get(4..8).ok_or_else(cut)?;
-    let (chunk, rest) = bytes[8..].split_at_checked(length).ok_or_else(cut)?;
-    Ok((kind, chunk, rest))
-}
-
-fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
-    let bytes = bytes.get(at..)?.first_chunk::<4>()?;
-    Some(u32::from_le_bytes(*bytes))
 }

@@ -1,10 +1,10 @@
 //! The hierarchy of nodes: who is above whom, and where everything is in the world.
 
-use ::gltf::json;
-use glam::{DMat4, DQuat, DVec3};
+use glam::DMat4;
 
 use super::Refused;
 use super::document::Document;
+use crate::gltf::local;
 
 /// Parents and world transforms, per node, and the roots of the scene.
 pub(super) struct Graph {
@@ -102,32 +102,4 @@ fn find_roots(document: &Document, parents: &[Option<usize>]) -> Result<Vec<usiz
         return Err(Refused::at(document.node_place(root), rule));
     }
     Ok(roots.to_vec())
-}
-
-/// The transform of a node, given as a matrix or as scale, rotation, translation. Doubles, so that moving bounds
-/// through it rounds once, at the end.
-fn local(node: &json::Node) -> Result<DMat4, &'static str> {
-    match node.matrix {
-        Some(matrix) => affine(DMat4::from_cols_array(&matrix.map(f64::from))),
-        None => composed(node),
-    }
-}
-
-fn affine(matrix: DMat4) -> Result<DMat4, &'static str> {
-    let last = matrix.row(3);
-    if last.truncate().abs().max_element() > 1e-6 || (last.w - 1.0).abs() > 1e-6 {
-        return Err("its matrix must be affine: the last row must be 0, 0, 0, 1");
-    }
-    Ok(matrix)
-}
-
-fn composed(node: &json::Node) -> Result<DMat4, &'static str> {
-    let scale = node.scale.map_or(DVec3::ONE, |s| DVec3::from_array(s.map(f64::from)));
-    let translation = node.translation.map_or(DVec3::ZERO, |t| DVec3::from_array(t.map(f64::from)));
-    let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
-    let length = rotation.length();
-    if length < 1e-6 {
-        return Err("its rotation must have a length");
-    }
-    Ok(DMat4::from_scale_rotation_translation(scale, rotation / length, translation))
 }

@@ -15,12 +15,24 @@ pub(super) struct Front {
     next: Vec<u32>,
     /// Per node, the first corner at it.
     heads: Vec<u32>,
-    active: Vec<bool>,
+    /// Per node.
+    stages: Vec<Stage>,
     /// The slots that have changed since they were last told, each once, and per slot whether it is among them.
     changed: Vec<u32>,
     is_changed: Vec<bool>,
     /// Slots on their way out.
     going: Vec<u32>,
+}
+
+/// What has become of a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// It is split: nodes below it are active.
+    Split,
+    /// It is in the cut.
+    Active,
+    /// It is contracted: a node above it is active.
+    Contracted,
 }
 
 impl Front {
@@ -31,13 +43,13 @@ impl Front {
             triangles: Vec::new(),
             next: Vec::new(),
             heads: vec![NONE; hierarchy.positions().len()],
-            active: vec![false; hierarchy.positions().len()],
+            stages: vec![Stage::Contracted; hierarchy.positions().len()],
             changed: Vec::new(),
             is_changed: Vec::new(),
             going: Vec::new(),
         };
         let roots = hierarchy.roots();
-        roots.iter().for_each(|&root| front.active[root as usize] = true);
+        roots.iter().for_each(|&root| front.stages[root as usize] = Stage::Active);
         for triangle in hierarchy.triangles() - hierarchy.base_triangles()..hierarchy.triangles() {
             let leaves = hierarchy.parts().triangles[triangle];
             front.push(triangle as u32, leaves.map(|leaf| roots[leaf as usize]));
@@ -58,7 +70,7 @@ impl Front {
     }
 
     pub(super) fn is_active(&self, node: u32) -> bool {
-        self.active[node as usize]
+        self.stages[node as usize] == Stage::Active
     }
 
     /// Nothing has changed yet.
@@ -83,9 +95,30 @@ impl Front {
         self.fan(node).flat_map(|corner| self.slots[corner as usize / 3]).filter(move |&n| n != node)
     }
 
-    /// The youngest neighbour of an active node if it is younger than the node: it has to be split first.
-    pub(super) fn blocker(&self, node: u32) -> Option<u32> {
-        self.neighbours(node).max().filter(|&youngest| youngest > node)
+    /// An active node that has to be split before that of an operation: the youngest neighbour if it is younger, or what
+    /// is above a node that was a neighbour until triangles went.
+    pub(super) fn blocker(&self, hierarchy: &Hierarchy, operation: u32) -> Option<u32> {
+        let node = hierarchy.node(operation);
+        let youngest = self.neighbours(node).max().filter(|&youngest| youngest > node);
+        youngest.or_else(|| self.lost_neighbour(hierarchy, operation).map(|n| self.above(hierarchy, n)))
+    }
+
+    /// A node that is to be split before that of an operation: one whose operation took a triangle of it, or one that has
+    /// taken up a corner of a triangle that comes back.
+    fn lost_neighbour(&self, hierarchy: &Hierarchy, operation: u32) -> Option<u32> {
+        let mut takers = hierarchy.takers(hierarchy.node(operation)).iter().map(|&t| hierarchy.node(t));
+        let mut apexes = hierarchy.apexes(operation).iter().copied();
+        let stage = |node: u32| self.stages[node as usize];
+        let taker = takers.find(|&taker| stage(taker) != Stage::Split);
+        taker.or_else(|| apexes.find(|&apex| stage(apex) == Stage::Contracted))
+    }
+
+    /// The active node that is or is above one that is not split.
+    fn above(&self, hierarchy: &Hierarchy, mut node: u32) -> u32 {
+        while let Some(parent) = hierarchy.parent(node).filter(|_| !self.is_active(node)) {
+            node = hierarchy.node(parent);
+        }
+        node
     }
 
     /// Whether the ends of an operation can be contracted now: they are active, and around them nothing has to be
@@ -141,8 +174,10 @@ impl Front {
     }
 
     fn activate(&mut self, hierarchy: &Hierarchy, operation: u32, is_split: bool) {
-        self.active[hierarchy.node(operation) as usize] = !is_split;
-        hierarchy.operation(operation).ends.iter().for_each(|&end| self.active[end as usize] = is_split);
+        let [node, end] =
+            if is_split { [Stage::Split, Stage::Active] } else { [Stage::Active, Stage::Contracted] };
+        self.stages[hierarchy.node(operation) as usize] = node;
+        hierarchy.operation(operation).ends.iter().for_each(|&below| self.stages[below as usize] = end);
     }
 
     /// The corners at a node.

@@ -274,7 +274,7 @@ impl Cut {
         let refused = std::mem::take(&mut self.refused);
         self.hold(operation);
         while let Some(&next) = self.waiting.last() {
-            let blocker = self.front.blocker(self.hierarchy.node(next));
+            let blocker = self.front.blocker(&self.hierarchy, next);
             if let Some(blocker) = blocker.and_then(|node| self.hierarchy.maker(node)) {
                 self.hold(blocker);
             } else if self.triangles().len() + self.hierarchy.going(next).len() <= budget.triangles {
@@ -370,6 +370,9 @@ impl Cut {
         let mut around = std::mem::take(&mut self.around);
         around.push(node);
         around.extend(self.front.neighbours(node));
+        // Those whose triangles went may be no neighbours any more.
+        let maker = self.hierarchy.maker(node);
+        around.extend(maker.into_iter().flat_map(|maker| self.hierarchy.apexes(maker)));
         around.sort_unstable();
         around.dedup();
         for node in around.drain(..) {

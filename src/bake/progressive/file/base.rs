@@ -53,9 +53,12 @@ pub(in crate::bake::progressive) fn read(bytes: &mut Bytes, head: &Head) -> Resu
 fn read_positions(bytes: &mut Bytes, count: usize, state: &mut State) -> Result<(), Fault> {
     let (mut last, mut differences) = ([0; 3], Vec::new());
     for _ in 0..count {
+        let start = *bytes;
         bytes.differences(3, &mut differences)?;
         last = std::array::from_fn(|i| restored(last[i], differences[i]));
-        state.push_position(Vec3::from_array(last.map(f32::from_bits)));
+        let position = Vec3::from_array(last.map(f32::from_bits));
+        start.must(position.is_finite(), "a position must be finite")?;
+        state.push_position(position);
     }
     Ok(())
 }

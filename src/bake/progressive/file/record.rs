@@ -56,13 +56,12 @@ impl Codec {
         let few = usize::from(flags >> COUNT_SHIFT);
         let triangles = if few == 3 { bytes.count()? } else { few };
         if flags & NOT_PLAIN == 0 {
-            return self.read_plain(bytes, state, triangles, split);
+            self.read_plain(bytes, state, triangles, split)?;
+        } else {
+            self.read_any(bytes, state, triangles, split)?;
+            split.broken_rule(state).map_or(Ok(()), |rule| Err(start.fault(rule)))?;
         }
-        self.read_any(bytes, state, triangles, split)?;
-        match split.broken_rule(state) {
-            Some(rule) => Err(start.fault(rule)),
-            None => Ok(()),
-        }
+        start.must(split.is_finite(), "a position must be finite")
     }
 
     /// Appends the record of a split of a mesh whose error is so many steps.
@@ -250,9 +249,9 @@ impl Codec {
             split.positions.push(self.place(place, 3 + 3 * i));
         }
         let mut differences = &self.differences[3 + 3 * positions..];
-        for i in 0..rows {
+        for model in split.models(state) {
             let (own, rest) = differences.split_at(state.width);
-            let expected = expected_row(split, state, i);
+            let expected = expected_row(model, state);
             let word =
                 |(k, &difference): (usize, &u32)| restored(expected.get(k).copied().unwrap_or(0), difference);
             split.rows.extend(own.iter().enumerate().map(word));
@@ -317,20 +316,16 @@ impl Codec {
         self.add_place(place, split.place);
         split.positions.iter().for_each(|&position| self.add_place(place, position));
         let zeros = vec![0; state.width];
-        for (i, row) in split.rows.chunks_exact(state.width.max(1)).enumerate() {
-            let expected = expected_row(split, state, i);
+        for (row, model) in split.rows.chunks_exact(state.width.max(1)).zip(split.models(state)) {
+            let expected = expected_row(model, state);
             self.words.add(if expected.is_empty() { &zeros } else { expected }, row);
         }
         self.words.put(out);
     }
 }
 
-/// The row that the i-th row of a split likely resembles; empty where there is none.
-fn expected_row<'a>(split: &Split, state: &'a State, i: usize) -> &'a [u32] {
-    let model = match i.checked_sub(split.changed.len()) {
-        None => Some(split.changed[i].wedge),
-        Some(added) => split.model(state, added),
-    };
+/// The row of what another resembles; empty where there is no such thing.
+fn expected_row(model: Option<u32>, state: &State) -> &[u32] {
     model.map_or(&[], |wedge| state.row(wedge))
 }
 

@@ -9,6 +9,7 @@ use serde::Deserialize;
 
 use super::Refused;
 use crate::bake::read::short_name;
+use crate::gltf::{broken_rule, parts};
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
@@ -61,24 +62,6 @@ pub(super) struct Document<'a> {
     /// Of the file and its buffers.
     pub(super) bytes: u64,
 }
-
-/// Required extensions that leave geometry as it is. `KHR_materials_*` are fine as well.
-const HARMLESS: [&str; 14] = [
-    "EXT_lights_ies",
-    "EXT_lights_image_based",
-    "EXT_texture_avif",
-    "EXT_texture_procedurals",
-    "EXT_texture_webp",
-    "KHR_animation_pointer",
-    "KHR_lights_punctual",
-    "KHR_mesh_quantization",
-    "KHR_texture_basisu",
-    "KHR_texture_transform",
-    "KHR_xmp_json_ld",
-    "MSFT_lod",
-    "MSFT_packing_normalRoughnessMetallic",
-    "MSFT_texture_dds",
-];
 
 impl<'a> Document<'a> {
     /// From text or GLB. Buffers that are files of their own must be in `folder`.
@@ -140,17 +123,10 @@ impl<'a> Document<'a> {
 
 impl Root {
     fn check(&self) -> Result<(), String> {
-        if !self.asset.version.starts_with("2.") {
-            return Err(format!("its asset.version must be 2.x, not {}", self.asset.version));
-        }
         if self.scene.is_some_and(|scene| scene >= self.scenes.len()) {
             return Err("its default scene must be one of its scenes".to_owned());
         }
-        let harmless = |name: &str| HARMLESS.contains(&name) || name.starts_with("KHR_materials_");
-        match self.extensions_required.iter().find(|name| !harmless(name)) {
-            Some(strange) => Err(format!("it requires the extension {strange}, which is not read")),
-            None => Ok(()),
-        }
+        broken_rule(&self.asset.version, &self.extensions_required, &[]).map_or(Ok(()), Err)
     }
 
     fn roots(&self) -> Option<Vec<usize>> {
@@ -227,51 +203,6 @@ fn sextet(letter: u8) -> Option<u32> {
         _ => return None,
     };
     Some(u32::from(value))
-}
-
-/// The JSON of a text or GLB file, and the bytes in it if it has any.
-pub(super) fn parts(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
-    match bytes.starts_with(b"glTF") {
-        true => chunks(bytes),
-        false => Ok((bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), None)),
-    }
-}
-
-/// The JSON of a GLB, and its bytes if it has any: a header of 12 bytes (magic, version, length), then chunks (length,
-/// kind, bytes).
-fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
-    let field = |at: usize| u32_at(bytes, at).ok_or("it is cut off within its header");
-    let (version, length) = (field(4)?, field(8)? as usize);
-    if version != 2 {
-        return Err(format!("its GLB version must be 2, not {version}"));
-    }
-    let all = bytes
-        .get(..length)
-        .ok_or_else(|| format!("it is cut off: its header says {length} bytes, it has {}", bytes.len()))?;
-    let (kind, json, rest) = chunk(all.get(12..).unwrap_or_default())?;
-    if kind != b"JSON" {
-        return Err("its first chunk must be JSON".to_owned());
-    }
-    if rest.is_empty() {
-        return Ok((json, None));
-    }
-    let (kind, blob, _) = chunk(rest)?;
-    Ok((json, (kind == b"BIN\0").then_some(blob)))
-}
-
-type Chunk<'a> = (&'a [u8], &'a [u8], &'a [u8]);
-
-/// The first chunk's kind and bytes, and what follows.
-fn chunk(bytes: &[u8]) -> Result<Chunk<'_>, String> {
-    let cut = || "it is cut off within a chunk".to_owned();
-    let length = u32_at(bytes, 0).ok_or_else(cut)? as usize;
-    let kind = bytes.get(4..8).ok_or_else(cut)?;
-    let (chunk, rest) = bytes[8..].split_at_checked(length).ok_or_else(cut)?;
-    Ok((kind, chunk, rest))
-}
-
-fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
-    Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?))
 }
 
 #[cfg(test)]

@@ -20,6 +20,10 @@ const UV_SETS: u32 = 8;
 /// A file may have so many triangles however small it is.
 const FREE_TRIANGLES: u64 = 1 << 20;
 
+/// Names are kept once per group, and a mesh of a thousand groups may be shown a thousand times: so many bytes of them
+/// count as a triangle. More would let names fill the memory, less would count those that people give.
+const LETTERS_PER_TRIANGLE: usize = 64;
+
 /// The mesh as far as it is put together.
 pub(super) struct Assembly<'a> {
     document: &'a Document<'a>,
@@ -120,6 +124,8 @@ impl<'a> Assembly<'a> {
             self.mesh.triangles.push([a, b, c].map(wedge));
         }
         let material = primitive.material.map(|material| self.document.material(material.value()));
+        let letters = name.len() + material.as_ref().map_or(0, String::len);
+        self.charge((letters / LETTERS_PER_TRIANGLE) as u64)?;
         let triangles = start..self.mesh.triangles.len();
         self.mesh.groups.push(Group { name: name.to_owned(), material, triangles });
         Ok(())
@@ -127,7 +133,7 @@ impl<'a> Assembly<'a> {
 
     fn charge(&mut self, triangles: u64) -> Result<(), String> {
         let left = self.left.checked_sub(triangles);
-        self.left = left.ok_or("with it there are more triangles than the file has bytes")?;
+        self.left = left.ok_or("with it there are more triangles or names than the file has bytes")?;
         Ok(())
     }
 
@@ -157,8 +163,12 @@ impl<'a> Assembly<'a> {
         (0..corners).map(checked).collect()
     }
 
-    /// A wedge for each of these vertices; columns that are new start with neutral rows for the wedges before.
+    /// A wedge for each of these vertices; columns that are new start with neutral rows for the wedges before. No
+    /// vertices bring no column: one without rows would be taken for one that nobody has.
     fn add_vertices(&mut self, attributes: &Attributes<'_>, space: &Space, vertices: &[usize]) {
+        if vertices.is_empty() {
+            return;
+        }
         let mesh = &mut self.mesh;
         let before = mesh.wedges.len();
         let after = before + vertices.len();

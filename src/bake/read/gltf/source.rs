@@ -8,6 +8,7 @@ use super::document::{self, Document};
 use super::nodes::{self, Placed};
 use super::primitive::{self, Assembly};
 use super::{MeshError, MeshFile, Refused};
+use crate::gltf::parts;
 
 /// An open file.
 pub(in crate::bake) struct Source<'a> {
@@ -33,7 +34,7 @@ impl<'a> Source<'a> {
         folder: Option<&'a Path>,
     ) -> Result<Self, MeshError> {
         let document = Document::open(bytes, folder).map_err(|refused| refused.within(file))?;
-        let (text, _) = document::parts(bytes).map_err(|rule| Refused::whole(rule).within(file))?;
+        let (text, _) = parts(bytes).map_err(|rule| Refused::whole(rule).within(file))?;
         Ok(Self { file, folder, text, document })
     }
 

@@ -38,7 +38,8 @@ fn json(nodes: &str, primitives: &str) -> String {
             {{"bufferView":3,"componentType":5126,"count":4,"type":"VEC3"}},
             {{"bufferView":1,"componentType":5121,"count":2,"type":"VEC4","normalized":true}},
             {{"componentType":5126,"count":4,"type":"VEC3","sparse":{{"count":1,
-                "indices":{{"bufferView":1,"byteOffset":1,"componentType":5121}},"values":{{"bufferView":3}}}}}}]}}"#
+                "indices":{{"bufferView":1,"byteOffset":1,"componentType":5121}},"values":{{"bufferView":3}}}}}},
+            {{"bufferView":1,"componentType":5121,"count":2,"type":"SCALAR"}}]}}"#
     )
 }
 
@@ -96,6 +97,13 @@ fn primitives_without_an_attribute_get_a_neutral_one() {
     assert_eq!((mesh.colours[at(0)], mesh.colours[at(1)]), (Vec4::ONE, Vec4::new(1., 0., 0., 1.)));
     assert_eq!((mesh.normals[at(0)], mesh.normals[at(2)]), (Vec3::ZERO, Vec3::Z));
     assert_eq!(mesh.uvs[0][at(0)], Vec2::ZERO);
+}
+
+#[test]
+fn primitives_without_a_triangle_bring_no_column() {
+    let none = r#"{"attributes":{"POSITION":0,"NORMAL":3,"TEXCOORD_0":2},"indices":6}"#;
+    let mesh = read_parts(r#"{"mesh":0}"#, &format!("{none},{PLAIN}"));
+    assert_eq!((mesh.triangles.len(), mesh.normals.len(), mesh.uvs.len()), (2, 0, 0));
 }
 
 #[test]
@@ -201,14 +209,25 @@ fn repeated_meshes_do_not_fill_the_memory() {
     assert_eq!(long(50).expect("half a million").mesh.triangles.len(), 500_000);
     let error = long(200).expect_err("two millions").to_string();
     let place = "a.glb: node 104, mesh 0 \"square\", primitive 0: ";
-    assert_eq!(error, format!("{place}with it there are more triangles than the file has bytes"));
+    assert_eq!(error, format!("{place}with it there are more triangles or names than the file has bytes"));
     let empty = vec![r#"{"attributes":{"POSITION":0},"mode":0}"#; 2000].join(",");
     let error = read(&glb(&json(&vec![r#"{"mesh":0}"#; 600].join(","), &empty), &square()), "a.glb", None);
-    assert!(error.expect_err("more than a million points").to_string().contains("more triangles than"));
+    assert!(
+        error.expect_err("more than a million points").to_string().contains("more triangles or names than")
+    );
     let zeros = json(r#"{"mesh":0}"#, r#"{"attributes":{"POSITION":5}}"#)
         .replace(r#""count":4,"type":"VEC3","sparse""#, r#""count":4000000000,"type":"VEC3","sparse""#);
     let error = read(&glb(&zeros, &square()), "a.glb", None).expect_err("refused").to_string();
     assert!(error.contains("accessor 5: it must not have more rows than the file has bytes"), "{error}");
+}
+
+#[test]
+fn repeated_names_do_not_fill_the_memory() {
+    let many = vec![PLAIN; 1000].join(",");
+    let text =
+        json(&vec![r#"{"mesh":0}"#; 1000].join(","), &many).replace("square", &"\u{1F600}".repeat(256));
+    let error = read(&glb(&text, &square()), "a.glb", None).expect_err("a gigabyte").to_string();
+    assert!(error.ends_with("with it there are more triangles or names than the file has bytes"), "{error}");
 }
 
 #[test]

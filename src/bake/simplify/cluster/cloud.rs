@@ -31,12 +31,7 @@ pub(in crate::bake::simplify) struct Clusters {
 impl<'a> Cloud<'a> {
     pub(in crate::bake::simplify) fn new(task: &'a Task) -> Self {
         let mesh = task.mesh;
-        let is_triangle = |&t: &u32| {
-            let [a, b, c] = mesh.corners(t as usize);
-            a != b && b != c && c != a
-        };
-        let old: Vec<u32> = (0..mesh.triangles.len() as u32).filter(is_triangle).collect();
-        let triangles: Vec<[u32; 3]> = old.iter().map(|&t| mesh.corners(t as usize)).collect();
+        let (old, triangles) = task.proper_triangles();
         let used = triangles.as_flattened().iter().map(|&v| mesh.positions[v as usize]);
         let bounds = Aabb::around(used);
         let corner = bounds.min.as_dvec3();

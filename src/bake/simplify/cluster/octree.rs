@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::cloud::{Cloud, Clusters, Joined};
+use crate::bake::simplify::order::spread;
 use crate::bake::simplify::planes::Planes;
 
 /// Levels of the octree below the box.
@@ -238,15 +239,6 @@ pub(in crate::bake::simplify) fn code(place: DVec3) -> u64 {
     let cells = f64::from(1 << DEPTH);
     let cell = (place * cells).max(DVec3::ZERO).min(DVec3::splat(cells - 1.0)).as_u64vec3();
     spread(cell.x) << 2 | spread(cell.y) << 1 | spread(cell.z)
-}
-
-/// Two zero bits before every bit of a number below 2²¹.
-fn spread(x: u64) -> u64 {
-    let x = (x | x << 32) & 0x001f_0000_0000_ffff;
-    let x = (x | x << 16) & 0x001f_0000_ff00_00ff;
-    let x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
-    let x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
-    (x | x << 2) & 0x1249_2492_4924_9249
 }
 
 /// How many cells below the box two places share.

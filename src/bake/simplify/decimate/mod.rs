@@ -19,6 +19,7 @@ use glam::DVec3;
 
 use super::queue::Queue;
 use super::rebuild::Corner;
+use super::steps::{Steps, step_by_step};
 use super::workpiece::Workpiece;
 use super::{Progress, Simplified, Simplifier, SimplifyError, Task};
 use fill::fill;
@@ -57,12 +58,7 @@ impl Simplifier for Decimate {
         task: &Task,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Simplified, SimplifyError> {
-        task.check()?;
-        let mut piece = Workpiece::new(task);
-        let mut removals = Removals::new(self, &piece);
-        let stopped = piece.run(progress, |piece| removals.step(piece));
-        let error = piece.in_units(removals.error);
-        Ok(piece.finish(error, stopped))
+        step_by_step(task, progress, |piece| Removals::new(self, piece))
     }
 }
 
@@ -81,6 +77,27 @@ struct Removals<'a> {
     swept: usize,
     since_sweep: usize,
     ring: Vec<u32>,
+}
+
+impl Steps for Removals<'_> {
+    /// Removes the vertex that is least off, if its loops can be filled.
+    fn step(&mut self, piece: &mut Workpiece) -> ControlFlow<()> {
+        let Some((cost, vertex)) = self.queue.pop() else {
+            if self.since_sweep * WORTH_A_SWEEP <= self.swept {
+                return ControlFlow::Break(());
+            }
+            self.sweep(piece);
+            return ControlFlow::Continue(());
+        };
+        if self.costs[vertex as usize].to_bits() == cost.to_bits() && cost.is_finite() {
+            self.try_remove(piece, vertex);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn error(&self) -> f64 {
+        self.error
+    }
 }
 
 impl<'a> Removals<'a> {
@@ -123,21 +140,6 @@ impl<'a> Removals<'a> {
         let cost = weight * (off + self.drifts[vertex as usize]);
         self.costs[vertex as usize] = cost.min(f64::from(f32::MAX)) as f32;
         self.queue.push(self.costs[vertex as usize], vertex);
-    }
-
-    /// Removes the vertex that is least off, if its loops can be filled.
-    fn step(&mut self, piece: &mut Workpiece) -> ControlFlow<()> {
-        let Some((cost, vertex)) = self.queue.pop() else {
-            if self.since_sweep * WORTH_A_SWEEP <= self.swept {
-                return ControlFlow::Break(());
-            }
-            self.sweep(piece);
-            return ControlFlow::Continue(());
-        };
-        if self.costs[vertex as usize].to_bits() == cost.to_bits() && cost.is_finite() {
-            self.try_remove(piece, vertex);
-        }
-        ControlFlow::Continue(())
     }
 
     fn try_remove(&mut self, piece: &mut Workpiece, vertex: u32) {
