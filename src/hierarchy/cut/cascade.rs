@@ -17,7 +17,7 @@ pub(super) struct Cascade {
     is_held: Vec<bool>,
     /// What there was no room for, as long as nothing has changed since.
     refused: Vec<u32>,
-    around: Vec<u32>,
+    above: Vec<u32>,
 }
 
 impl Cascade {
@@ -132,21 +132,18 @@ impl Cut {
 
     /// What became possible because a node came to be.
     fn await_merges_around(&mut self, node: u32) {
-        let mut around = std::mem::take(&mut self.cascade.around);
-        around.push(node);
-        around.extend(self.front.neighbours(node));
-        around.sort_unstable();
-        around.dedup();
-        for node in around.drain(..) {
-            let parent = if self.is_to_be_split(node) { None } else { self.hierarchy.parent(node) };
-            if let Some(parent) = parent {
-                let is_known = self.cascade.is_held[parent as usize] || self.candidates.may_be_merged(parent);
-                if !is_known && self.front.may_merge(&self.hierarchy, parent) {
-                    self.candidates.add(&self.hierarchy, parent, Way::Merge);
-                }
+        let mut above = std::mem::take(&mut self.cascade.above);
+        for node in self.front.around(node).chain([node]).filter(|&node| !self.is_to_be_split(node)) {
+            above.extend(self.hierarchy.parent(node).filter(|parent| !above.contains(parent)));
+        }
+        for operation in above.drain(..) {
+            let is_known =
+                self.cascade.is_held[operation as usize] || self.candidates.may_be_merged(operation);
+            if !is_known && self.front.may_merge(&self.hierarchy, operation) {
+                self.candidates.add(&self.hierarchy, operation, Way::Merge);
             }
         }
-        self.cascade.around = around;
+        self.cascade.above = above;
     }
 
     fn is_to_be_split(&self, node: u32) -> bool {
