@@ -348,6 +348,21 @@ fn small_and_broken_meshes_have_hierarchies() {
     assert_eq!(refused.to_string(), "contraction 0: it must be of two vertices that are there");
 }
 
+/// One that was left out would keep all that rest on it from being done, up to the coarsest.
+#[test]
+fn a_contraction_that_would_fold_a_terrain_goes_elsewhere() {
+    let surface = terrain(4, 1);
+    let [kept, gone] = [12, 13];
+    let position = surface.positions[kept as usize] + 5.0 * Vec3::X;
+    let contraction = Contraction { kept, gone, position, error: 0.0 };
+    let hierarchy = hierarchy::build(&surface.into(), &[contraction]).expect("a good record");
+    assert_eq!(hierarchy.parts().operations.len(), 1);
+    let cut = Cut::new(Arc::new(hierarchy));
+    let positions = cut.hierarchy().positions();
+    assert_eq!(cut.triangles().len(), 30);
+    assert!(cut.triangles().iter().all(|&t| normal(positions, t).z > 0.0));
+}
+
 #[test]
 fn parts_stay_parts() {
     let mut two = icosphere(4);
