@@ -1,7 +1,7 @@
 //! An update of a cut: per frame, by the speed of the camera and the size of the mesh; and what reading a hierarchy takes.
 //!
 //! `cargo bench --features bake --bench hierarchy`. Terrains of 10⁴ and 10⁵ vertices, and on demand of 10⁶ and 10⁷:
-//! `LOD_BUDGET_VERTICES=10000000` is how many there may be. To make a hierarchy takes a minute for 10⁶ vertices, ten
+//! `LOD_BUDGET_VERTICES=1e7` is how many there may be. To make a hierarchy takes a minute for 10⁶ vertices, ten
 //! minutes and 5 GB of memory for 10⁷, so these are kept as `.lodh` files in the target folder's `tmp`; delete them when
 //! what makes them has changed. What matters is that a frame at one speed takes the same whatever the size.
 
