@@ -399,7 +399,7 @@ fn no_error_in_view_is_larger_than_the_largest_that_is_told() {
     let (leaves, operations) = (hierarchy.leaves(), &hierarchy.parts().operations);
     let mut walk = walk_through(&hierarchy);
     let mut cut = Cut::new(hierarchy.clone());
-    for frame in 0..2_000 {
+    for frame in 0..800 {
         // Steps that add up to a round, and leaps.
         let view = if frame % 400 < 300 { round(frame as f32 / 300.0) } else { walk.step() };
         let report = cut.update(&[view], &Budget::triangles(1_000 + frame % 3 * 500));
