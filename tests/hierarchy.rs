@@ -156,14 +156,18 @@ impl Walk {
     }
 }
 
+fn walk_through(hierarchy: &Hierarchy) -> Walk {
+    let bounds = hierarchy.bounds();
+    let (low, high) = (bounds.center - bounds.radius, bounds.center + bounds.radius);
+    Walk { rng: Pcg64Mcg::seed_from_u64(1), eye: high, target: low, low, high }
+}
+
 /// Walks for so many frames, and checks every one of them.
 fn walk(surface: Surface, frames: usize, upright: bool, with_twin: bool) {
     let hierarchy = hierarchy_of(surface);
     let facings = facings(&hierarchy);
     let below = if with_twin { dependencies(&hierarchy) } else { Vec::new() };
-    let bounds = hierarchy.bounds();
-    let (low, high) = (bounds.center - bounds.radius, bounds.center + bounds.radius);
-    let mut walk = Walk { rng: Pcg64Mcg::seed_from_u64(1), eye: high, target: low, low, high };
+    let mut walk = walk_through(&hierarchy);
     let (mut nodes, mut edges) = (Vec::new(), Vec::new());
     let whole = topology(&hierarchy.parts().triangles, &mut nodes, &mut edges);
     let mut cut = Cut::new(hierarchy.clone());
@@ -379,6 +383,21 @@ fn small_and_broken_meshes_have_hierarchies() {
     assert_eq!(refused.to_string(), "contraction 0: it must be of two vertices that are there");
 }
 
+/// One that was left out would keep all that rest on it from being done, up to the coarsest.
+#[test]
+fn a_contraction_that_would_fold_a_terrain_goes_elsewhere() {
+    let surface = terrain(4, 1);
+    let [kept, gone] = [12, 13];
+    let position = surface.positions[kept as usize] + 5.0 * Vec3::X;
+    let contraction = Contraction { kept, gone, position, error: 0.0 };
+    let hierarchy = hierarchy::build(&surface.into(), &[contraction]).expect("a good record");
+    assert_eq!(hierarchy.parts().operations.len(), 1);
+    let cut = Cut::new(Arc::new(hierarchy));
+    let positions = cut.hierarchy().positions();
+    assert_eq!(cut.triangles().len(), 30);
+    assert!(cut.triangles().iter().all(|&t| normal(positions, t).z > 0.0));
+}
+
 #[test]
 fn parts_stay_parts() {
     let mut two = icosphere(4);
@@ -406,6 +425,38 @@ fn errors_are_bounds() {
             assert!(apart.attained <= f64::from(bound), "{apart:?} {bound}");
         }
     }
+}
+
+/// What is put off is never put off too long: whatever is split or could be, nothing in view is off by more than is told.
+#[test]
+fn no_error_in_view_is_larger_than_the_largest_that_is_told() {
+    let hierarchy = hierarchy_of(terrain(60, 3));
+    let (leaves, operations) = (hierarchy.leaves(), &hierarchy.parts().operations);
+    let mut walk = walk_through(&hierarchy);
+    let mut cut = Cut::new(hierarchy.clone());
+    for frame in 0..800 {
+        // Steps that add up to a round, and leaps.
+        let view = if frame % 400 < 300 { round(frame as f32 / 300.0) } else { walk.step() };
+        let report = cut.update(&[view], &Budget::triangles(1_000 + frame % 3 * 500));
+        let lens = view.lens(Default::default());
+        let shown = (0..operations.len()).filter(|&o| cut.is_active((leaves + o) as u32));
+        for (o, operation) in shown.map(|o| (o, &operations[o])) {
+            // Errors of a terrain are upright.
+            let slant = Vec3::Z.cross((operation.sphere.center - view.eye).normalize_or_zero()).length();
+            let px = slant * operation.error * lens.unit_px(&operation.sphere);
+            let is_seen = lens.frustum.sees(&operation.sphere);
+            assert!(
+                !is_seen || px <= 1.001 * report.max_error_px,
+                "frame {frame}, operation {o}: {px} {report:?}"
+            );
+        }
+    }
+}
+
+/// A camera on its way around the middle of a terrain, low above it.
+fn round(share: f32) -> View {
+    let at = |share: f32| Vec2::from_angle(std::f32::consts::TAU * share) * 0.35 + 0.5;
+    camera(at(share).extend(0.2), at(share + 0.1).extend(0.1))
 }
 
 /// A scene of props and a terrain under one budget: the level that is chosen for the terrain is the budget of its cut.

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use lod_budget::bake::simplify::{GarlandHeckbert, quietly};
-use lod_budget::bake::{hierarchy, shapes};
-use lod_budget::hierarchy::{Budget, Cut};
+use lod_budget::bake::{Mesh, hierarchy, shapes};
+use lod_budget::hierarchy::{Budget, Cut, Hierarchy};
 
 use crate::flight::Flight;
 use crate::plot;
@@ -27,22 +27,32 @@ pub struct Point {
     pub us: f64,
 }
 
-/// Flies over ever larger terrains at several speeds.
-pub fn show(largest: u32, plot: Option<&Path>) -> Result<(), Box<dyn Error>> {
+/// Flies over ever larger terrains at several speeds. Hierarchies are kept in a folder, if there is one.
+pub fn show(largest: u32, plot: Option<&Path>, folder: Option<&Path>) -> Result<(), Box<dyn Error>> {
     println!("| vertices | speed | changes | errors worked out | µs |\n|---:|---:|---:|---:|---:|");
     let sides = (0..).map(|i| SMALLEST * 10f64.sqrt().powi(i)).map(|side| side as u32);
     let mut points = Vec::new();
     for side in sides.take_while(|&side| side <= largest) {
         let surface = shapes::terrain(side, 1);
         let flight = Flight::over(&surface);
-        let hierarchy = hierarchy::of(&surface.into(), &GarlandHeckbert::default(), &mut quietly)?;
-        let mut cut = Cut::new(Arc::new(hierarchy));
+        let file = folder.map(|folder| folder.join(format!("terrain-{side}.lodh")));
+        let mut cut = Cut::new(Arc::new(hierarchy_of(surface.into(), file.as_deref())?));
         cut.update(&[flight.view(0.0)], &Budget::triangles(TRIANGLES));
         for speed in [0.0, 1.0, 2.0, 4.0, 8.0, 16.0] {
             points.push(at_speed(&mut cut, &flight, speed));
         }
     }
     plot.map_or(Ok(()), |path| plot::growth(&points, path))
+}
+
+/// From the file, or made and written there.
+fn hierarchy_of(mesh: Mesh, file: Option<&Path>) -> Result<Hierarchy, Box<dyn Error>> {
+    if let Some(file) = file.filter(|file| file.exists()) {
+        return Ok(hierarchy::read(file)?);
+    }
+    let hierarchy = hierarchy::of(&mesh, &GarlandHeckbert::default(), &mut quietly)?;
+    file.map_or(Ok(()), |file| std::fs::write(file, hierarchy::to_bytes(&hierarchy)))?;
+    Ok(hierarchy)
 }
 
 /// A stretch of the flight at so many 10 000ths of the round per frame.

@@ -3,13 +3,14 @@
 //!
 //! ```text
 //! cargo run --release --features bake --example flyover -- [TERRAIN] [TRIANGLES] [PLOT.svg]
-//! cargo run --release --features bake --example flyover -- growth [LARGEST] [PLOT.svg]
+//! cargo run --release --features bake --example flyover -- growth [LARGEST] [PLOT.svg] [FOLDER]
 //! ```
 //!
 //! TERRAIN is how many cells a procedural one has on a side (1024 for 2 097 152 triangles), or a file (OBJ, PLY, OFF,
 //! STL, GLB; z upwards). How far off either is on the screen is measured at the vertices of the terrain and does not
-//! know of any stored bound. `growth` flies over terrains of 10⁴ vertices and more, up to LARGEST cells on a side, and
-//! shows what a frame's work depends on. Prints Markdown.
+//! know of any stored bound. `growth` flies over terrains of 10⁴ vertices and more, up to LARGEST cells on a side (3162 for
+//! 10⁷ vertices), and shows what a frame's work depends on; their hierarchies are kept in FOLDER, as making the largest
+//! takes ten minutes and 5 GB of memory. Prints Markdown.
 
 mod flight;
 mod growth;
@@ -35,11 +36,12 @@ const STRIDE: usize = 10;
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let at = |i: usize, default: &str| arguments.get(i).cloned().unwrap_or(default.into());
+    let path = |i: usize| arguments.get(i).map(Path::new);
     if at(0, "") == "growth" {
-        return growth::show(at(1, "1024").parse()?, arguments.get(2).map(Path::new));
+        return growth::show(at(1, "1024").parse()?, path(2), path(3));
     }
     let mesh = terrain(&at(0, "1024"))?;
-    fly(&mesh, at(1, "50000").parse()?, arguments.get(2).map(Path::new))
+    fly(&mesh, at(1, "50000").parse()?, path(2))
 }
 
 fn terrain(named: &str) -> Result<Mesh, Box<dyn Error>> {

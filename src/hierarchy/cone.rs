@@ -66,7 +66,7 @@ impl Cone {
 const ROUNDING: f32 = 1e-3;
 
 /// The cosine of a sine between 0 and 1, and the other way round.
-fn other_side(x: f32) -> f32 {
+pub(super) fn other_side(x: f32) -> f32 {
     (1.0 - x * x).max(0.0).sqrt()
 }
 

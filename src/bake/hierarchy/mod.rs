@@ -2,7 +2,8 @@
 //!
 //! [`build`] follows the record and works out how far off each operation is at most, around what, and which way. What
 //! operations move the surface by adds up (`overlay.rs`). A height field (all of whose triangles face one of the axes'
-//! directions) is measured along that axis, against the mesh itself (`ground.rs`), and operations that would turn a triangle of it away from there are left out, with all that rest on them.
+//! directions) is measured along that axis, against the mesh itself (`ground.rs`), and operations that would turn a
+//! triangle of it away from there go elsewhere on their edge, or are left out with all that rest on them.
 //!
 //! ```
 //! use std::sync::Arc;

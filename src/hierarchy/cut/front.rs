@@ -90,16 +90,16 @@ impl Front {
         self.changed.sort_unstable();
     }
 
-    /// Neighbours of a node, most of them twice.
-    pub(super) fn neighbours(&self, node: u32) -> impl Iterator<Item = u32> {
-        self.fan(node).flat_map(|corner| self.slots[corner as usize / 3]).filter(move |&n| n != node)
+    /// The corners of the triangles at a node, itself among them.
+    pub(super) fn around(&self, node: u32) -> impl Iterator<Item = u32> {
+        self.fan(node).flat_map(|corner| self.slots[corner as usize / 3])
     }
 
     /// An active node that has to be split before that of an operation: the youngest neighbour if it is younger, or what
     /// is above a node that was a neighbour until triangles went.
     pub(super) fn blocker(&self, hierarchy: &Hierarchy, operation: u32) -> Option<u32> {
         let node = hierarchy.node(operation);
-        let youngest = self.neighbours(node).max().filter(|&youngest| youngest > node);
+        let youngest = self.around(node).max().filter(|&youngest| youngest > node);
         youngest.or_else(|| self.lost_neighbour(hierarchy, operation).map(|n| self.above(hierarchy, n)))
     }
 
@@ -125,8 +125,9 @@ impl Front {
     /// contracted before them.
     pub(super) fn may_merge(&self, hierarchy: &Hierarchy, operation: u32) -> bool {
         let ends = hierarchy.operation(operation).ends;
-        let is_due = |node: u32| hierarchy.parent(node).is_none_or(|parent| parent >= operation);
-        ends.iter().all(|&end| self.is_active(end) && self.neighbours(end).all(is_due))
+        let is_due = |&node: &u32| hierarchy.parent(node).is_none_or(|parent| parent >= operation);
+        let may_follow = |corner: u32| self.slots[corner as usize / 3].iter().all(is_due);
+        ends.iter().all(|&end| self.is_active(end)) && ends.iter().all(|&end| self.fan(end).all(may_follow))
     }
 
     /// Undoes an operation whose node is active and has no blocker.
