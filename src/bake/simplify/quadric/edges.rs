@@ -1,20 +1,20 @@
 //! What the edges of a vertex cost, several at once.
 //!
 //! Costs are most of what simplification computes. They are computed in columns here, one for each number that is known
-//! of the far ends, by a loop without branches or calls, which compilers turn into instructions for several edges each.
-//! The same operations in the same order as for one edge give the same bits.
+//! of the far ends, by a loop without branches that is compiled to vectors of two edges or of four. The same operations
+//! in the same order as for one edge give the same bits.
 
 use glam::DVec3;
-use multiversion::multiversion;
 
 use super::cost::Cost;
 use super::form::{Form, Quadric};
 use super::placement::Spot;
+use crate::kernel::{self, Kernel};
 
 /// So many edges at once. Most vertices have fewer.
 pub(super) const ROOM: usize = 16;
 
-/// A multiple of the edges in one instruction, whatever the processor.
+/// A multiple of the edges in one vector of the widths in use.
 const LANES: usize = 4;
 
 /// The far ends of some edges of a vertex, in columns.
@@ -44,7 +44,7 @@ impl Edges {
             self.set(len, quadric, edge);
             len += 1;
         }
-        costs(self, len, from, cost)
+        kernel::run(Costs { edges: self, len, from: from.form(), cost })
     }
 
     #[inline]
@@ -58,23 +58,33 @@ impl Edges {
     }
 }
 
-/// The costs of the first `len` edges. Everything that is called here has to be inlined.
-#[multiversion(targets("x86_64+avx2"))]
-fn costs(edges: &Edges, len: usize, from: &Quadric, cost: Cost) -> [f32; ROOM] {
-    let mut costs = [0.0; ROOM];
-    let from = from.form();
-    let [xx, yy, zz, yz, zx, xy, bx, by, bz, c] = &edges.forms;
-    let [x, y, z] = &edges.places;
-    // No less than whole instructions: what is too much is nobody's.
-    for i in 0..len.next_multiple_of(LANES).min(ROOM) {
-        let far = [xx[i], yy[i], zz[i], yz[i], zx[i], xy[i], bx[i], by[i], bz[i], c[i]];
-        let (far, edge) = (Form::from_array(far), DVec3::new(x[i], y[i], z[i]));
-        let sum = from + far.seen_from(-edge);
-        let (spot, is_in_reach) = Spot::least(edge, &sum);
-        let least = cost.of_edge(spot.error, edge, &sum);
-        costs[i] = if is_in_reach { least } else { f32::NAN };
+/// What the first `len` edges cost.
+struct Costs<'a> {
+    edges: &'a Edges,
+    len: usize,
+    from: Form,
+    cost: Cost,
+}
+
+impl Kernel for Costs<'_> {
+    type Sum = [f32; ROOM];
+
+    #[inline(always)]
+    fn run(self) -> Self::Sum {
+        let mut costs = [0.0; ROOM];
+        let [xx, yy, zz, yz, zx, xy, bx, by, bz, c] = &self.edges.forms;
+        let [x, y, z] = &self.edges.places;
+        // No less than whole vectors: what is too much is nobody's.
+        for i in 0..self.len.next_multiple_of(LANES).min(ROOM) {
+            let far = [xx[i], yy[i], zz[i], yz[i], zx[i], xy[i], bx[i], by[i], bz[i], c[i]];
+            let (far, edge) = (Form::from_array(far), DVec3::new(x[i], y[i], z[i]));
+            let sum = self.from + far.seen_from(-edge);
+            let (spot, is_in_reach) = Spot::least(edge, &sum);
+            let least = self.cost.of_edge(spot.error, edge, &sum);
+            costs[i] = if is_in_reach { least } else { f32::NAN };
+        }
+        costs
     }
-    costs
 }
 
 #[cfg(test)]
