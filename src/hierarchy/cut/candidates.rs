@@ -123,16 +123,11 @@ impl Candidates {
         self.merges.key(operation).is_some()
     }
 
-    /// An operation can be split or contracted.
-    pub(super) fn add(&mut self, hierarchy: &Hierarchy, operation: u32, way: Way) {
-        self.look(hierarchy, operation, way);
-    }
-
     /// An operation that could be contracted was, and can be split.
     pub(super) fn turn_to_split(&mut self, hierarchy: &Hierarchy, operation: u32) {
         match self.merges.remove(operation) {
             Some(key) if self.is_close(operation) => self.splits.set(operation, !key),
-            _ => self.look(hierarchy, operation, Way::Split),
+            _ => self.add(hierarchy, operation, Way::Split),
         }
     }
 
@@ -150,11 +145,11 @@ impl Candidates {
 
     fn look_again(&mut self, hierarchy: &Hierarchy, operation: u32) {
         let way = if self.splits.key(operation).is_some() { Way::Split } else { Way::Merge };
-        self.look(hierarchy, operation, way);
+        self.add(hierarchy, operation, way);
     }
 
-    /// Looks at an operation as closely as it matters.
-    fn look(&mut self, hierarchy: &Hierarchy, operation: u32, way: Way) {
+    /// An operation can be split or contracted: looks at it as closely as it matters.
+    pub(super) fn add(&mut self, hierarchy: &Hierarchy, operation: u32, way: Way) {
         let of = hierarchy.operation(operation);
         match Look::from_afar(self.sight.lenses(), of, way, &self.brink) {
             Some(look) => {

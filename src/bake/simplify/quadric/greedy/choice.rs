@@ -92,18 +92,18 @@ impl Greedy<'_> {
     /// What contracting a vertex with each of some partners costs, [`ROOM`] at most.
     #[inline]
     fn costs(&mut self, vertex: u32, partners: &[u32]) -> [f32; ROOM] {
-        let is_plain = self.layers.is_none() && self.method.placement == Placement::Optimal;
+        let is_plain =
+            self.layers.is_none() && self.method.placement == Placement::Optimal && !self.is_locked(vertex);
         let mut costs = if is_plain { self.plain_costs(vertex, partners) } else { [f32::NAN; ROOM] };
-        let is_locked = |v: u32| self.marks[v as usize] & mark::LOCKED != 0;
         for (cost, &partner) in costs.iter_mut().zip(partners) {
-            if cost.is_nan() || is_locked(vertex) || is_locked(partner) {
+            if cost.is_nan() || self.is_locked(partner) {
                 *cost = self.cost(vertex, partner);
             }
         }
         costs
     }
 
-    /// The same for vertices that are not locked, as far as there is a best place in reach.
+    /// The same where neither end is locked, as far as there is a best place in reach.
     #[inline]
     fn plain_costs(&mut self, vertex: u32, partners: &[u32]) -> [f32; ROOM] {
         let Self { edges, positions, quadrics, scale, .. } = self;

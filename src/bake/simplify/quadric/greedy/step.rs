@@ -64,16 +64,21 @@ impl Greedy<'_> {
         self.layers.as_ref().map_or(Form::default(), error)
     }
 
+    /// Whether a vertex must stay where it is.
+    #[inline]
+    pub(super) fn is_locked(&self, vertex: u32) -> bool {
+        self.marks[vertex as usize] & mark::LOCKED != 0
+    }
+
     /// Where the contraction of two vertices goes, seen from the first.
     #[inline]
     fn spot(&self, a: u32, b: u32, edge: DVec3, sum: &Form) -> Spot {
-        let is_locked = |v: u32| self.marks[v as usize] & mark::LOCKED != 0;
         let area = |v: u32| f64::from(self.areas[v as usize]);
         let share = || {
             let share = area(b) / (area(a) + area(b));
             if share.is_finite() { share } else { 0.5 }
         };
-        match (is_locked(a), is_locked(b)) {
+        match (self.is_locked(a), self.is_locked(b)) {
             (false, false) => self.method.placement.spot(edge, share, sum),
             (true, _) => Spot::new(DVec3::ZERO, sum),
             (_, true) => Spot::new(edge, sum),
