@@ -252,9 +252,7 @@ fn parts_that_go_come_back_in_order() {
         let method = GarlandHeckbert { topology: Topology::Free, pairs, ..GarlandHeckbert::default() };
         let hierarchy = hierarchy::of(&Mesh::from(beads()), &method, &mut quietly).expect("a good shape");
         let below = dependencies(&hierarchy);
-        let bounds = hierarchy.bounds();
-        let (low, high) = (bounds.center - bounds.radius, bounds.center + bounds.radius);
-        let mut walk = Walk { rng: Pcg64Mcg::seed_from_u64(1), eye: high, target: low, low, high };
+        let mut walk = walk_through(&hierarchy);
         let mut cut = Cut::new(Arc::new(hierarchy));
         for _ in 0..200 {
             let triangles = walk.rng.random_range(0..cut.hierarchy().triangles());
