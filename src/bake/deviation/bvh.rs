@@ -321,7 +321,9 @@ mod tests {
             let (point, (bvh, order)) = (DVec3::from(point), Bvh::new(&triangles));
             let nearest = bvh.nearest(point, hint.index(triangles.len()) as u32);
             let all = triangles.iter().map(|&corners| Facet::new(corners).distance2(point));
-            prop_assert_eq!(nearest.distance2, all.fold(f64::INFINITY, f64::min));
+            // Of triangles that meet in the nearest point, one may seem nearer than its box, by rounding.
+            let least = all.fold(f64::INFINITY, f64::min);
+            prop_assert!(nearest.distance2 >= least && nearest.distance2.sqrt() - least.sqrt() < 1e-14);
             let found = Facet::new(triangles[order[nearest.triangle as usize] as usize]);
             prop_assert_eq!(nearest.distance2, found.distance2(point));
         }
