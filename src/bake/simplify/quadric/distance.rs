@@ -4,29 +4,30 @@
 use glam::DVec3;
 
 /// The squared distance from `point` to the nearest point of a triangle, or `least` if that is less or the triangle has
-/// no area.
-#[inline]
+/// no area. Without branches.
+#[inline(always)]
 pub(super) fn distance2(point: DVec3, [a, b, c]: [DVec3; 3], least: f64) -> f64 {
     let (side, last, from_a) = (b - a, c - a, point - a);
     let across = side.cross(last);
     let across2 = across.length_squared();
-    let height2 = from_a.dot(across).powi(2) / across2;
+    let height = from_a.dot(across);
     let beyond_side = side.cross(from_a).dot(across);
     let beyond_last = from_a.cross(last).dot(across);
-    if (beyond_side >= 0.0) & (beyond_last >= 0.0) & (beyond_side + beyond_last <= across2) {
-        least.min(height2)
-    } else if height2 < least {
-        [(from_a, side), (point - b, c - b), (from_a, last)]
-            .iter()
-            .map(|&(from_start, side)| distance2_to_side(from_start, side))
-            .fold(least, f64::min)
-    } else {
-        least
-    }
+    let is_above = (beyond_side >= 0.0) & (beyond_last >= 0.0) & (beyond_side + beyond_last <= across2);
+    let to_sides = [(from_a, side), (point - b, c - b), (from_a, last)]
+        .map(|(from_start, side)| distance2_to_side(from_start, side));
+    let to_border = lesser(lesser(to_sides[0], to_sides[1]), to_sides[2]);
+    lesser(least, if is_above { height * height / across2 } else { to_border })
+}
+
+/// The lesser of two numbers, the first if the second is none.
+#[inline(always)]
+fn lesser(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
 }
 
 /// The squared distance of a point to a segment, both seen from the segment's start.
-#[inline]
+#[inline(always)]
 fn distance2_to_side(point: DVec3, side: DVec3) -> f64 {
     let share = (point.dot(side) / side.length_squared()).clamp(0.0, 1.0);
     point.distance_squared(share * side)

@@ -23,10 +23,10 @@ impl Facing {
         Self((127.0 * normal).round().to_array().map(|x| x as i8))
     }
 
-    /// Whether a triangle with the normal `normal`, of whatever length, is turned by more than a right angle.
+    /// The normal, in 127ths.
     #[inline]
-    fn is_left_by(self, normal: DVec3) -> bool {
-        normal.dot(DVec3::from_array(self.0.map(f64::from))) < 0.0
+    pub(super) fn normal(self) -> DVec3 {
+        DVec3::from_array(self.0.map(f64::from))
     }
 }
 
@@ -40,20 +40,21 @@ impl Guard {
         Self { turn: squared(turn), shape: squared(shape) }
     }
 
-    /// Whether the triangle of the corners `from`, `p` and `q` may become that of `to`, `p` and `q`, which once was
-    /// `facing`. A triangle without area may become anything.
-    #[inline]
-    pub(super) fn allows(&self, from: DVec3, to: DVec3, [p, q]: [DVec3; 2], facing: Facing) -> bool {
+    /// Whether the triangle of the corners `from`, `p` and `q` may become that of `to`, `p` and `q`, which once faced
+    /// along `facing`, of whatever length. A triangle without area may become anything.
+    #[inline(always)]
+    pub(super) fn allows(&self, from: DVec3, to: DVec3, [p, q]: [DVec3; 2], facing: DVec3) -> bool {
         let (side, old, new) = (q - p, p - from, p - to);
         let (before, after) = (old.cross(side), new.cross(side));
         let (turn, sizes) = (before.dot(after), (before.length_squared(), after.length_squared()));
-        let keeps_direction =
-            (turn > 0.0) & (turn * turn >= self.turn * sizes.0 * sizes.1) & !facing.is_left_by(after);
+        let is_upright = after.dot(facing) >= 0.0;
+        let keeps_direction = (turn > 0.0) & (turn * turn >= self.turn * sizes.0 * sizes.1) & is_upright;
         let sides = |a: DVec3| side.length_squared() + a.length_squared() + (a + side).length_squared();
-        let spread = sides(new);
+        let (spread, spread_before) = (sides(new), sides(old));
         let is_shapely = 12.0 * sizes.1 >= self.shape * spread * spread;
-        let was_no_better = || sizes.1 * sides(old).powi(2) >= SLIVER_KEEPS * sizes.0 * spread * spread;
-        keeps_direction && (is_shapely || was_no_better()) || sizes.0 == 0.0
+        let was_no_better =
+            sizes.1 * spread_before * spread_before >= SLIVER_KEEPS * sizes.0 * spread * spread;
+        (keeps_direction & (is_shapely | was_no_better)) | (sizes.0 == 0.0)
     }
 }
 
@@ -65,7 +66,7 @@ mod tests {
 
     /// Whether the corner (0, 1) of a triangle over (±1, 0) may go there.
     fn may_go(guard: Guard, x: f64, y: f64, z: f64) -> bool {
-        guard.allows(DVec3::Y, DVec3::new(x, y, z), [DVec3::NEG_X, DVec3::X], Facing::default())
+        guard.allows(DVec3::Y, DVec3::new(x, y, z), [DVec3::NEG_X, DVec3::X], DVec3::ZERO)
     }
 
     #[test]
@@ -84,7 +85,7 @@ mod tests {
         let tip = |eighths: f64| DVec3::new(0.0, (eighths * FRAC_PI_4).cos(), (eighths * FRAC_PI_4).sin());
         let upwards = Facing::new(DVec3::Z);
         let may_turn =
-            |from: f64, to: f64| guard.allows(tip(from), tip(to), [DVec3::NEG_X, DVec3::X], upwards);
+            |from: f64, to: f64| guard.allows(tip(from), tip(to), [DVec3::NEG_X, DVec3::X], upwards.normal());
         assert!(may_turn(0.0, 1.0) && may_turn(1.0, 1.9) && may_turn(2.9, 1.9));
         assert!(!may_turn(1.9, 2.9) && !may_turn(1.9, 2.1));
     }
@@ -92,7 +93,7 @@ mod tests {
     #[test]
     fn slivers_may_get_better_and_what_has_no_area_may_become_anything() {
         let guard = Guard::new(0.5, 0.5);
-        let allows = |from, to| guard.allows(from, to, [DVec3::NEG_X, DVec3::X], Facing::new(DVec3::Z));
+        let allows = |from, to| guard.allows(from, to, [DVec3::NEG_X, DVec3::X], DVec3::Z);
         assert!(allows(DVec3::Y * 0.01, DVec3::Y * 0.02));
         assert!(allows(DVec3::Y * 0.02, DVec3::Y * 0.019) && !allows(DVec3::Y * 0.02, DVec3::Y * 0.01));
         assert!(allows(DVec3::ZERO, DVec3::NEG_Y));

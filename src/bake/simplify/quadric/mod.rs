@@ -23,6 +23,7 @@ mod layers;
 mod pairs;
 mod placement;
 mod record;
+mod rest;
 
 pub use cost::Cost;
 pub(in crate::bake) use greedy::witness::{Seen, Witness};

@@ -25,6 +25,7 @@ use crate::bake::simplify::quadric::guard::{Facing, Guard};
 use crate::bake::simplify::quadric::layer::{Around, Move};
 use crate::bake::simplify::quadric::layers::Layers;
 use crate::bake::simplify::quadric::pairs::Pairs;
+use crate::bake::simplify::quadric::rest::Rest;
 use crate::bake::simplify::quadric::{GarlandHeckbert, Topology};
 use crate::bake::simplify::queue::Queue;
 use crate::bake::simplify::{Progress, Stopped, Target, Task};
@@ -119,6 +120,8 @@ pub(super) struct Greedy<'a> {
     partners: Vec<u32>,
     /// What is known of the edges to them.
     edges: Edges,
+    /// What is left around the last contraction that was looked at.
+    rest: Rest,
 }
 
 impl<'a> Greedy<'a> {

@@ -13,6 +13,7 @@ use crate::bake::simplify::quadric::form::Quadric;
 use crate::bake::simplify::quadric::guard::{Facing, Guard};
 use crate::bake::simplify::quadric::layers::Layers;
 use crate::bake::simplify::quadric::pairs::Pairs;
+use crate::bake::simplify::quadric::rest::Rest;
 use crate::bake::simplify::quadric::{GarlandHeckbert, Topology};
 use crate::bake::simplify::queue::Queue;
 use crate::bounds::Aabb;
@@ -57,6 +58,7 @@ impl<'a> Greedy<'a> {
             fan: Vec::new(),
             partners: Vec::new(),
             edges: Edges::new(),
+            rest: Rest::default(),
         };
         greedy.sum_up(&weights);
         greedy.find_pairs();

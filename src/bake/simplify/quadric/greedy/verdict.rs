@@ -5,7 +5,6 @@ use glam::DVec3;
 use super::step::Step;
 use super::{Greedy, LARGEST_FAN, mark};
 use crate::bake::simplify::link::{Complex, others};
-use crate::bake::simplify::quadric::distance::distance2;
 use crate::bake::simplify::quadric::layer::Move;
 use crate::bake::simplify::quadric::layers::Layers;
 use crate::bake::simplify::quadric::{Cost, Topology};
@@ -32,8 +31,7 @@ impl Greedy<'_> {
             && self.in_units(error) <= self.most
             && !self.fans.of(gone).is_empty()
             && self.fans.of(kept).len() + self.fans.of(gone).len() <= LARGEST_FAN
-            && self.guard_allows(kept, gone, to)
-            && self.guard_allows(gone, kept, to);
+            && self.guard_allows(kept, gone, to);
         if !may {
             Verdict::No
         } else if self.keeps_topology(kept, gone) {
@@ -46,6 +44,23 @@ impl Greedy<'_> {
         }
     }
 
+    /// Whether what is left around two vertices may follow them; finds what that is.
+    fn guard_allows(&mut self, kept: u32, gone: u32, to: DVec3) -> bool {
+        let mut rest = std::mem::take(&mut self.rest);
+        rest.clear(self.fans.of(kept).len() + self.fans.of(gone).len());
+        for (vertex, other) in [(kept, gone), (gone, kept)] {
+            let from = self.place(vertex);
+            for &triangle in self.fans.of(vertex) {
+                let [p, q] = others(self.triangles[triangle as usize], vertex);
+                let stays = (p != other) & (q != other);
+                let side = [self.place(p), self.place(q)];
+                rest.add_if(stays, from, side, self.facings[triangle as usize]);
+            }
+        }
+        self.rest = rest;
+        self.rest.may_go(to, self.guard)
+    }
+
     /// Quadrics know of planes, and not where they end: a needle may slide back along itself at hardly any cost. So how
     /// far both ends are from what would be left is looked at, too, when it is a contraction's turn.
     fn price_of_tips(&self, step: &Step, to: DVec3) -> Verdict {
@@ -53,30 +68,21 @@ impl Greedy<'_> {
             return Verdict::Yes;
         }
         let Move { kept, gone, .. } = step.way;
-        let area = TIP * f64::from(self.areas[kept as usize] + self.areas[gone as usize]);
-        let paid = self.choices[kept as usize].cost();
-        let enough = self.method.cost.sum(paid, area) / area;
-        let distance2 = |end, other| self.distance2_to_rest(self.place(end), [end, other], to, enough);
-        let price = self.method.cost.of(area * distance2(kept, gone).max(distance2(gone, kept)), area);
+        let (ends, paid) = ([kept, gone].map(|v| self.place(v)), self.choices[kept as usize].cost());
+        let price = |[a, b]: [f64; 2]| self.price_of_distance(step, a.max(b));
+        // What is left is no farther than the place itself.
+        if price(ends.map(|end| end.distance_squared(to))) <= paid {
+            return Verdict::Yes;
+        }
+        let price = price(self.rest.distances2(to, ends));
         if price > paid { Verdict::For(price) } else { Verdict::Yes }
     }
 
-    /// The squared distance of a place to the triangles that are left of two vertices when both have gone to `to`, or a
-    /// distance that is no more than `enough`. Where nothing is left that is the distance to `to`.
-    fn distance2_to_rest(&self, at: DVec3, [end, other]: [u32; 2], to: DVec3, enough: f64) -> f64 {
-        let mut least = at.distance_squared(to);
-        for (vertex, opposite) in [(end, other), (other, end)] {
-            for &triangle in self.fans.of(vertex) {
-                if least <= enough {
-                    return least;
-                }
-                let [p, q] = others(self.triangles[triangle as usize], vertex);
-                if p != opposite && q != opposite {
-                    least = distance2(at, [to, self.place(p), self.place(q)], least);
-                }
-            }
-        }
-        least
+    /// What a step costs at which both ends come to be that far, squared, from what is left.
+    fn price_of_distance(&self, step: &Step, distance2: f64) -> f32 {
+        let Move { kept, gone, .. } = step.way;
+        let area = TIP * f64::from(self.areas[kept as usize] + self.areas[gone as usize]);
+        self.method.cost.of(area * distance2, area)
     }
 
     fn keeps_topology(&mut self, kept: u32, gone: u32) -> bool {
@@ -94,10 +100,8 @@ impl Greedy<'_> {
             return Verdict::Yes;
         }
         let going = self.stranded(kept, gone).chain([kept, gone]);
-        let distance2 = |vertex| self.distance2_to_rest(self.place(vertex), [kept, gone], to, 0.0);
-        let farthest2 = going.map(distance2).fold(0.0, f64::max);
-        let area = TIP * f64::from(self.areas[kept as usize] + self.areas[gone as usize]);
-        let price = self.method.cost.of(area * farthest2, area);
+        let farthest2 = going.flat_map(|v| self.rest.distances2(to, [self.place(v)])).fold(0.0, f64::max);
+        let price = self.price_of_distance(step, farthest2);
         if self.in_units(farthest2) > self.most {
             Verdict::No
         } else if self.is_free || self.choices[kept as usize].cost() >= price {
@@ -127,16 +131,6 @@ impl Greedy<'_> {
     /// The distance, in object units, of a squared one between places.
     pub(super) fn in_units(&self, squared: f64) -> f32 {
         (squared.sqrt() / self.scale) as f32
-    }
-
-    /// Whether the triangles of a vertex, but for those that go with the edge to `other`, may follow it.
-    fn guard_allows(&self, vertex: u32, other: u32, to: DVec3) -> bool {
-        let from = self.place(vertex);
-        self.fans.of(vertex).iter().all(|&t| {
-            let [p, q] = others(self.triangles[t as usize], vertex);
-            let side = || [self.place(p), self.place(q)];
-            p == other || q == other || self.guard.allows(from, to, side(), self.facings[t as usize])
-        })
     }
 
     /// Whether an edge is a seam that is held. One that has not two triangles is a border.
