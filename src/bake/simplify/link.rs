@@ -6,9 +6,11 @@ use std::hint::select_unpredictable;
 
 use super::fans::Fans;
 
-/// A set of vertices that is emptied in no time.
+/// A set of vertices that is emptied in no time, and knows which of them were counted.
 pub(super) struct Stamps {
+    /// `now` for those that are in, one more for those that were counted, less for the others.
     stamps: Vec<u32>,
+    /// Even.
     now: u32,
 }
 
@@ -20,10 +22,10 @@ impl Stamps {
     /// Empties the set.
     #[inline]
     pub(super) fn clear(&mut self) {
-        self.now = self.now.wrapping_add(1);
+        self.now = self.now.wrapping_add(2);
         if self.now == 0 {
             self.stamps.fill(0);
-            self.now = 1;
+            self.now = 2;
         }
     }
 
@@ -34,16 +36,16 @@ impl Stamps {
 
     #[inline]
     fn contains(&self, vertex: u32) -> bool {
-        self.stamps[vertex as usize] == self.now
+        self.stamps[vertex as usize] >= self.now
     }
 
-    /// Takes a vertex out, and says whether it was in.
+    /// Counts a vertex: says whether it is in and was not counted yet.
     #[inline]
-    fn take(&mut self, vertex: u32) -> bool {
+    fn count(&mut self, vertex: u32) -> bool {
         let stamp = &mut self.stamps[vertex as usize];
-        let is_in = *stamp == self.now;
-        *stamp = if is_in { 0 } else { *stamp };
-        is_in
+        let is_first = *stamp == self.now;
+        *stamp += u32::from(is_first);
+        is_first
     }
 }
 
@@ -99,15 +101,12 @@ impl Complex<'_> {
     /// Whether `a`, whose neighbours are stamped, and `b` share so many neighbours and no side of a triangle. Without
     /// branches but for the rare: nobody can predict them.
     fn shares_only(self, a: u32, b: u32, neighbours: usize, stamps: &mut Stamps) -> bool {
-        for [p, q] in self.ring(b) {
-            let may_share_side = (p != a) & (q != a) & stamps.contains(p) & stamps.contains(q);
-            if may_share_side && self.has_side(a, p, q) {
-                return false;
-            }
-        }
         let mut shared = 0;
         for [p, q] in self.ring(b) {
-            shared += usize::from((p != a) & stamps.take(p)) + usize::from((q != a) & stamps.take(q));
+            shared += usize::from(stamps.count(p)) + usize::from(stamps.count(q));
+            if stamps.contains(p) & stamps.contains(q) && self.has_side(a, p, q) {
+                return false;
+            }
         }
         shared == neighbours
     }

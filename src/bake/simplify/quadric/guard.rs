@@ -20,7 +20,7 @@ pub(super) struct Facing([i8; 3]);
 impl Facing {
     /// Of a unit normal, or of 0, which is no direction at all.
     pub(super) fn new(normal: DVec3) -> Self {
-        Self((127.0 * normal).round().to_array().map(|x| x as i8))
+        Self((127.0 * normal).to_array().map(|x| (x + 0.5_f64.copysign(x)) as i8))
     }
 
     /// The normal, in 127ths.

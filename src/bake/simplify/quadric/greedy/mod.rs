@@ -120,8 +120,8 @@ pub(super) struct Greedy<'a> {
     partners: Vec<u32>,
     /// What is known of the edges to them.
     edges: Edges,
-    /// What is left around the last contraction that was looked at.
-    rest: Rest,
+    /// What would be left of both ends of the last contraction that was looked at.
+    rest: [Rest; 2],
 }
 
 impl<'a> Greedy<'a> {

@@ -58,7 +58,7 @@ impl<'a> Greedy<'a> {
             fan: Vec::new(),
             partners: Vec::new(),
             edges: Edges::new(),
-            rest: Rest::default(),
+            rest: [Rest::default(), Rest::default()],
         };
         greedy.sum_up(&weights);
         greedy.find_pairs();

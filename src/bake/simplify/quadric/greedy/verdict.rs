@@ -31,7 +31,8 @@ impl Greedy<'_> {
             && self.in_units(error) <= self.most
             && !self.fans.of(gone).is_empty()
             && self.fans.of(kept).len() + self.fans.of(gone).len() <= LARGEST_FAN
-            && self.guard_allows(kept, gone, to);
+            && self.guard_allows(0, [kept, gone], to)
+            && self.guard_allows(1, [gone, kept], to);
         if !may {
             Verdict::No
         } else if self.keeps_topology(kept, gone) {
@@ -44,21 +45,20 @@ impl Greedy<'_> {
         }
     }
 
-    /// Whether what is left around two vertices may follow them; finds what that is.
-    fn guard_allows(&mut self, kept: u32, gone: u32, to: DVec3) -> bool {
-        let mut rest = std::mem::take(&mut self.rest);
-        rest.clear(self.fans.of(kept).len() + self.fans.of(gone).len());
-        for (vertex, other) in [(kept, gone), (gone, kept)] {
-            let from = self.place(vertex);
-            for &triangle in self.fans.of(vertex) {
-                let [p, q] = others(self.triangles[triangle as usize], vertex);
-                let stays = (p != other) & (q != other);
-                let side = [self.place(p), self.place(q)];
-                rest.add_if(stays, from, side, self.facings[triangle as usize]);
-            }
+    /// Whether the triangles of the end `side` of a contraction, but for those that go with the edge to the other, may
+    /// follow it; finds what those are.
+    fn guard_allows(&mut self, side: usize, [vertex, other]: [u32; 2], to: DVec3) -> bool {
+        let mut rest = std::mem::take(&mut self.rest[side]);
+        let fan = self.fans.of(vertex);
+        rest.clear(self.place(vertex), fan.len());
+        for &triangle in fan {
+            let [p, q] = others(self.triangles[triangle as usize], vertex);
+            let stays = (p != other) & (q != other);
+            rest.add_if(stays, [self.place(p), self.place(q)], self.facings[triangle as usize]);
         }
-        self.rest = rest;
-        self.rest.may_go(to, self.guard)
+        let may_go = rest.may_go(to, self.guard);
+        self.rest[side] = rest;
+        may_go
     }
 
     /// Quadrics know of planes, and not where they end: a needle may slide back along itself at hardly any cost. So how
@@ -69,12 +69,15 @@ impl Greedy<'_> {
         }
         let Move { kept, gone, .. } = step.way;
         let (ends, paid) = ([kept, gone].map(|v| self.place(v)), self.choices[kept as usize].cost());
-        let price = |[a, b]: [f64; 2]| self.price_of_distance(step, a.max(b));
-        // What is left is no farther than the place itself.
-        if price(ends.map(|end| end.distance_squared(to))) <= paid {
+        let distances =
+            |[a, b]: [usize; 2]| [self.rest[a].distance2(to, ends[0]), self.rest[b].distance2(to, ends[1])];
+        // Where an end was there is mostly a triangle of its own.
+        let own = distances([0, 1]);
+        if self.price_of_distance(step, own[0].max(own[1])) <= paid {
             return Verdict::Yes;
         }
-        let price = price(self.rest.distances2(to, ends));
+        let other = distances([1, 0]);
+        let price = self.price_of_distance(step, own[0].min(other[0]).max(own[1].min(other[1])));
         if price > paid { Verdict::For(price) } else { Verdict::Yes }
     }
 
@@ -100,7 +103,9 @@ impl Greedy<'_> {
             return Verdict::Yes;
         }
         let going = self.stranded(kept, gone).chain([kept, gone]);
-        let farthest2 = going.flat_map(|v| self.rest.distances2(to, [self.place(v)])).fold(0.0, f64::max);
+        let distance2 = |v| self.rest.each_ref().map(|rest| rest.distance2(to, self.place(v)));
+        let farthest2 =
+            going.map(|v| distance2(v).into_iter().fold(f64::INFINITY, f64::min)).fold(0.0, f64::max);
         let price = self.price_of_distance(step, farthest2);
         if self.in_units(farthest2) > self.most {
             Verdict::No
