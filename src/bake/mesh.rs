@@ -1,5 +1,6 @@
 //! The one mesh type of the bake.
 
+use std::mem::take;
 use std::ops::Range;
 
 use glam::{Vec2, Vec3, Vec4};
@@ -132,14 +133,29 @@ impl Mesh {
         }
     }
 
+    /// A mesh of the same name and of the rows `kept` of every column, which are its wedges in that order. Without
+    /// positions, triangles and groups.
+    pub(super) fn rows(&self, kept: &[u32]) -> Self {
+        Self {
+            name: self.name.clone(),
+            wedges: gather(&self.wedges, kept),
+            normals: gather(&self.normals, kept),
+            uvs: self.uvs.iter().map(|set| gather(set, kept)).collect(),
+            colours: gather(&self.colours, kept),
+            tangents: gather(&self.tangents, kept),
+            skins: gather(&self.skins, kept),
+            ..Self::default()
+        }
+    }
+
     /// Keeps, of every column, the rows of `kept`, which become the wedges in that order. Triangles are left alone.
     pub(super) fn keep_wedges(&mut self, kept: &[u32]) {
-        gather(&mut self.wedges, kept);
-        gather(&mut self.normals, kept);
-        self.uvs.iter_mut().for_each(|set| gather(set, kept));
-        gather(&mut self.colours, kept);
-        gather(&mut self.tangents, kept);
-        gather(&mut self.skins, kept);
+        *self = Self {
+            positions: take(&mut self.positions),
+            triangles: take(&mut self.triangles),
+            groups: take(&mut self.groups),
+            ..self.rows(kept)
+        };
     }
 
     /// Keeps the triangles that `keep` says, and shortens the groups; those left without a triangle go.
@@ -165,10 +181,9 @@ fn check_indices(what: &str, of: &str, indices: &[u32], count: usize) -> Result<
 }
 
 /// The rows of `kept`, in that order; an empty column stays empty.
-fn gather<T: Copy>(column: &mut Vec<T>, kept: &[u32]) {
-    if !column.is_empty() {
-        *column = kept.iter().map(|&row| column[row as usize]).collect();
-    }
+fn gather<T: Copy>(column: &[T], kept: &[u32]) -> Vec<T> {
+    let rows = if column.is_empty() { &[] } else { kept };
+    rows.iter().map(|&row| column[row as usize]).collect()
 }
 
 #[cfg(test)]

@@ -91,7 +91,7 @@ pub(super) fn classes(keys: impl Iterator<Item = [u32; 3]>) -> Classes {
 }
 
 /// Classes from the first thing that each is the same as: itself, or one before it that is its own first.
-fn numbered(first_of: &[u32]) -> Classes {
+pub(super) fn numbered(first_of: &[u32]) -> Classes {
     let mut classes = Classes { of: Vec::with_capacity(first_of.len()), firsts: Vec::new() };
     for (thing, &first) in first_of.iter().enumerate() {
         let class = if first as usize == thing {

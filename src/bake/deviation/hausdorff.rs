@@ -243,7 +243,7 @@ impl<'a> Search<'a> {
 
     fn extent(&self, known: Extent) -> Extent {
         let slack = SLACK * self.from.reach.max(self.to.reach);
-        let bound = (self.left2.sqrt().max(self.attained) + slack).next_up().max(known.bound);
+        let bound = (self.left2.sqrt().max(self.attained) + slack).max(known.bound);
         Extent { attained: (self.attained - slack).max(0.0), bound, splits: known.splits + self.splits }
     }
 }

@@ -4,10 +4,10 @@ use glam::Vec3;
 
 use crate::bounds::Aabb;
 
-/// Bits per axis of a place on the curve.
+/// Bits per axis of a place on the curve, and of a digit that places are sorted by.
 const BITS: u32 = 10;
 
-/// The vertices that triangles use, along a Z-order curve, ties by index. O(n log n).
+/// The vertices that triangles use, along a Z-order curve, ties by index. O(n).
 ///
 /// Meshes come in all orders, some of them random, and what simplification waits for is memory.
 pub(super) fn along_curve(positions: &[Vec3], triangles: impl Iterator<Item = [u32; 3]>) -> Vec<u32> {
@@ -15,18 +15,21 @@ pub(super) fn along_curve(positions: &[Vec3], triangles: impl Iterator<Item = [u
     for corner in triangles.flatten() {
         is_used[corner as usize] = true;
     }
-    let used = || (0..positions.len() as u32).filter(|&v| is_used[v as usize]);
-    let bounds = Aabb::around(used().map(|v| positions[v as usize]));
+    let used: Vec<u32> = (0..positions.len() as u32).filter(|&v| is_used[v as usize]).collect();
+    let bounds = Aabb::around(used.iter().map(|&v| positions[v as usize]));
     let corner = bounds.min.as_dvec3();
     let extent = (bounds.max.as_dvec3() - corner).max_element().max(f64::MIN_POSITIVE);
     let cells = f64::from((1u32 << BITS) - 1) / extent;
-    let code = |v: u32| {
+    let place = |&v: &u32| {
         let cell = ((positions[v as usize].as_dvec3() - corner) * cells).as_u64vec3();
-        spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2
+        (v, (spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2) as u32)
     };
-    let mut keys: Vec<u64> = used().map(|v| code(v) << 32 | u64::from(v)).collect();
-    keys.sort_unstable();
-    keys.into_iter().map(|key| key as u32).collect()
+    let mut places: Vec<(u32, u32)> = used.iter().map(place).collect();
+    for digit in 0..3 {
+        let digits = places.iter().map(|&(_, place)| place >> (digit * BITS) & ((1 << BITS) - 1));
+        places = by_key(digits, 1 << BITS).into_iter().map(|i| places[i as usize]).collect();
+    }
+    places.into_iter().map(|(vertex, _)| vertex).collect()
 }
 
 /// Two zero bits before every bit of a number below 2²¹.
@@ -38,19 +41,18 @@ pub(super) fn spread(x: u64) -> u64 {
     (x | x << 2) & 0x1249_2492_4924_9249
 }
 
-/// Triangles in the order of their lowest corners, ties by index: the indices of all, from the corners. O(n).
-pub(super) fn by_lowest_corner(triangles: &[[u32; 3]], vertices: usize) -> Vec<u32> {
-    let lowest = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]) as usize;
-    let mut next = vec![0; vertices + 1];
-    for triangle in triangles {
-        next[lowest(triangle) + 1] += 1;
+/// The indices of some keys in ascending order of the keys, all of which are below `end`; ties by index. O(n + end).
+pub(super) fn by_key(keys: impl ExactSizeIterator<Item = u32> + Clone, end: usize) -> Vec<u32> {
+    let mut next = vec![0; end + 1];
+    for key in keys.clone() {
+        next[key as usize + 1] += 1;
     }
-    for vertex in 0..vertices {
-        next[vertex + 1] += next[vertex];
+    for key in 0..end {
+        next[key + 1] += next[key];
     }
-    let mut order = vec![0; triangles.len()];
-    for (index, triangle) in (0..).zip(triangles) {
-        let at: &mut u32 = &mut next[lowest(triangle)];
+    let mut order = vec![0; keys.len()];
+    for (index, key) in (0..).zip(keys) {
+        let at: &mut u32 = &mut next[key as usize];
         order[*at as usize] = index;
         *at += 1;
     }
@@ -76,7 +78,8 @@ mod tests {
     }
 
     #[test]
-    fn triangles_are_sorted_by_their_lowest_corner() {
-        assert_eq!(by_lowest_corner(&[[3, 2, 4], [0, 1, 2], [4, 3, 2], [1, 2, 0]], 5), [1, 3, 0, 2]);
+    fn keys_are_sorted_ties_by_index() {
+        assert_eq!(by_key([2, 0, 2, 0, 5].into_iter(), 6), [1, 3, 0, 2, 4]);
+        assert!(by_key([].into_iter(), 0).is_empty());
     }
 }

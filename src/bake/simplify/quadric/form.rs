@@ -1,6 +1,6 @@
 //! The quadric error of a point: a quadratic form, which is the weighted sum of squared distances to planes.
 
-use std::ops::Add;
+use std::ops::{Add, AddAssign};
 
 use glam::{DVec3, Vec3};
 
@@ -32,19 +32,10 @@ pub(super) struct Quadric {
 
 impl Quadric {
     /// `weight` times the squared distance to the plane through the vertex with the unit normal `normal`.
-    #[cfg(test)]
-    pub(super) fn plane(normal: DVec3, weight: f64) -> Self {
-        let mut quadric = Self::default();
-        quadric.add_plane(normal, weight);
-        quadric
-    }
-
-    /// Adds `weight` times the squared distance to the plane through the vertex with the unit normal `normal`.
     #[inline]
-    pub(super) fn add_plane(&mut self, n: DVec3, weight: f64) {
+    pub(super) fn plane(n: DVec3, weight: f64) -> Self {
         let (diagonal, mixed) = (weight * n * n, weight * DVec3::new(n.y * n.z, n.z * n.x, n.x * n.y));
-        self.diagonal = (DVec3::from_array(self.diagonal) + diagonal).to_array();
-        self.mixed = (DVec3::from_array(self.mixed) + mixed).to_array();
+        Self { diagonal: diagonal.to_array(), mixed: mixed.to_array(), ..Self::default() }
     }
 
     /// Some of its bits, for who wants it in the cache.
@@ -61,6 +52,17 @@ impl Quadric {
             linear: Vec3::from_array(self.linear).as_dvec3(),
             constant: f64::from(self.constant),
         }
+    }
+}
+
+/// The sum of two as they are seen from the same vertex.
+impl AddAssign for Quadric {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        self.diagonal = (DVec3::from_array(self.diagonal) + DVec3::from_array(other.diagonal)).to_array();
+        self.mixed = (DVec3::from_array(self.mixed) + DVec3::from_array(other.mixed)).to_array();
+        self.linear = (Vec3::from_array(self.linear) + Vec3::from_array(other.linear)).to_array();
+        self.constant += other.constant;
     }
 }
 

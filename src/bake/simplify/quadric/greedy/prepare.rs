@@ -7,7 +7,7 @@ use super::{Greedy, mark};
 use crate::bake::simplify::Task;
 use crate::bake::simplify::fans::Fans;
 use crate::bake::simplify::link::{Complex, Stamps, others};
-use crate::bake::simplify::order::{along_curve, by_lowest_corner};
+use crate::bake::simplify::order::{along_curve, by_key};
 use crate::bake::simplify::quadric::edges::Edges;
 use crate::bake::simplify::quadric::form::Quadric;
 use crate::bake::simplify::quadric::guard::{Facing, Guard};
@@ -82,15 +82,19 @@ impl<'a> Greedy<'a> {
             let across = (b - a).cross(c - a);
             let normal = across.normalize_or_zero();
             let area = 0.5 * weight * across.length();
+            let plane = Quadric::plane(normal, area);
             self.facings[t] = Facing::new(normal);
             for corner in corners {
-                self.quadrics[corner as usize].add_plane(normal, area);
+                self.quadrics[corner as usize] += plane;
                 self.areas[corner as usize] += area as f32;
             }
         }
-        let mut uses = vec![0u64; self.positions.len()];
+        let (mut uses, mut sides) = (vec![0; self.positions.len()], Vec::new());
         for vertex in 0..self.positions.len() as u32 {
-            self.find_borders(vertex, weights, &mut uses);
+            let fan = self.fans.of(vertex).iter();
+            sides.clear();
+            sides.extend(fan.map(|&t| (t as usize, others(self.triangles[t as usize], vertex))));
+            self.find_borders(vertex, &sides, weights, &mut uses);
         }
         if let Some(mut layers) = self.layers.take() {
             let places: Vec<DVec3> = (0..self.positions.len() as u32).map(|v| self.place(v)).collect();
@@ -117,39 +121,31 @@ impl<'a> Greedy<'a> {
     }
 
     /// Marks a vertex that has borders, and holds it to those of one triangle. Where more than two meet nothing ends, and
-    /// their own planes hold the edge if they meet at an angle. `uses` is 0 everywhere, and has room for counts: per
-    /// neighbour of triangles that lead to it, and 2³² times those that come from it.
-    fn find_borders(&mut self, vertex: u32, weights: &[f64], uses: &mut [u64]) {
+    /// their own planes hold the edge if they meet at an angle. `sides` are the triangles of the vertex and their other
+    /// corners. `uses` is 0 everywhere, and has room for counts: per neighbour of triangles that lead to it, and 2³²
+    /// times those that come from it.
+    fn find_borders(&mut self, vertex: u32, sides: &[(usize, [u32; 2])], weights: &[f64], uses: &mut [u64]) {
         const PLAIN: u64 = 1 << 32 | 1;
-        let sides = self.fans.of(vertex).iter().map(|&t| others(self.triangles[t as usize], vertex));
-        for [p, q] in sides.clone() {
+        for &(_, [p, q]) in sides {
             uses[p as usize] += 1;
             uses[q as usize] += 1 << 32;
         }
         // Where every neighbour has one triangle in either direction there are no others.
-        if sides.clone().all(|[p, _]| uses[p as usize] == PLAIN) {
-            sides.for_each(|[p, _]| uses[p as usize] = 0);
+        if sides.iter().all(|&(_, [p, _])| uses[p as usize] == PLAIN) {
+            sides.iter().for_each(|&(_, [p, _])| uses[p as usize] = 0);
             return;
         }
-        for i in 0..self.fans.of(vertex).len() {
-            let triangle = self.fans.of(vertex)[i] as usize;
-            for neighbour in others(self.triangles[triangle], vertex) {
-                let (to, from) = (uses[neighbour as usize] as u32, (uses[neighbour as usize] >> 32) as u32);
-                if uses[neighbour as usize] != PLAIN {
-                    self.marks[vertex as usize] |= if to != from { mark::ODD } else { 0 };
-                    self.marks[vertex as usize] |= if to + from != 2 { mark::BORDER } else { 0 };
-                }
-                if to + from == 1 {
-                    let weight = weights[triangle] * f64::from(self.method.border);
-                    self.hold_to_edge(vertex, neighbour, triangle, weight);
-                }
+        let neighbours = || sides.iter().flat_map(|&(triangle, ends)| ends.map(|end| (triangle, end)));
+        for (triangle, neighbour) in neighbours() {
+            let (to, from) = (uses[neighbour as usize] as u32, (uses[neighbour as usize] >> 32) as u32);
+            self.marks[vertex as usize] |= if to != from { mark::ODD } else { 0 };
+            self.marks[vertex as usize] |= if to + from != 2 { mark::BORDER } else { 0 };
+            if to + from == 1 {
+                let weight = weights[triangle] * f64::from(self.method.border);
+                self.hold_to_edge(vertex, neighbour, triangle, weight);
             }
         }
-        for &triangle in self.fans.of(vertex) {
-            for neighbour in others(self.triangles[triangle as usize], vertex) {
-                uses[neighbour as usize] = 0;
-            }
-        }
+        neighbours().for_each(|(_, neighbour)| uses[neighbour as usize] = 0);
     }
 
     /// Holds one end of an edge of a triangle to the plane through it that stands upright on the triangle.
@@ -157,7 +153,7 @@ impl<'a> Greedy<'a> {
         let [a, b, c] = self.triangles[triangle].map(|v| self.place(v));
         let edge = self.place(neighbour) - self.place(vertex);
         let upright = (b - a).cross(c - a).cross(edge).normalize_or_zero();
-        self.quadrics[vertex as usize].add_plane(upright, weight * edge.length_squared());
+        self.quadrics[vertex as usize] += Quadric::plane(upright, weight * edge.length_squared());
     }
 }
 
@@ -174,17 +170,15 @@ struct Ordered {
 
 impl Ordered {
     fn new(task: &Task) -> Self {
-        let old: Vec<[u32; 3]> = (0..task.mesh.triangles.len()).map(|t| task.mesh.corners(t)).collect();
-        let is_triangle = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
-        let kept: Vec<u32> = (0..old.len() as u32).filter(|&t| is_triangle(&old[t as usize])).collect();
-        let origins = along_curve(&task.mesh.positions, kept.iter().map(|&t| old[t as usize]));
+        let (kept, mut unsorted) = task.proper_triangles();
+        let origins = along_curve(&task.mesh.positions, unsorted.iter().copied());
         let mut new = vec![0; task.mesh.positions.len()];
         for (index, &vertex) in (0..).zip(&origins) {
             new[vertex as usize] = index;
         }
-        let unsorted: Vec<[u32; 3]> =
-            kept.iter().map(|&t| old[t as usize].map(|v| new[v as usize])).collect();
-        let order = by_lowest_corner(&unsorted, origins.len());
+        unsorted.as_flattened_mut().iter_mut().for_each(|vertex| *vertex = new[*vertex as usize]);
+        let lowest = |&[a, b, c]: &[u32; 3]| a.min(b).min(c);
+        let order = by_key(unsorted.iter().map(lowest), origins.len());
         let most = task.weights.iter().fold(0.0, |most: f32, &w| most.max(w));
         let scale = if most > 0.0 { 1.0 / f64::from(most) } else { 1.0 };
         let old_triangles: Vec<u32> = order.iter().map(|&i| kept[i as usize]).collect();
