@@ -106,8 +106,8 @@ impl Greedy<'_> {
     /// The same where neither end is locked, as far as there is a best place in reach.
     #[inline]
     fn plain_costs(&mut self, vertex: u32, partners: &[u32]) -> [f32; ROOM] {
-        let Self { edges, positions, quadrics, scale, .. } = self;
-        let place = |v: u32| positions[v as usize].as_dvec3() * *scale;
+        let Self { edges, places, quadrics, .. } = self;
+        let place = |v: u32| places[v as usize];
         let at = place(vertex);
         let ends = partners.iter().map(|&p| (&quadrics[p as usize], place(p) - at));
         edges.costs(&quadrics[vertex as usize], ends, self.method.cost)

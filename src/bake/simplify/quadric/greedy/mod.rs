@@ -79,7 +79,8 @@ pub(super) struct Greedy<'a> {
     guard: Guard,
     /// A power of two that makes places of positions, some units around.
     scale: f64,
-    positions: Vec<Vec3>,
+    /// Where vertices are: positions in double precision, scaled, which loses nothing.
+    places: Vec<DVec3>,
     quadrics: Vec<Quadric>,
     /// Weighted area that was contracted into each vertex.
     areas: Vec<f32>,
@@ -127,7 +128,16 @@ pub(super) struct Greedy<'a> {
 impl<'a> Greedy<'a> {
     #[inline]
     fn place(&self, vertex: u32) -> DVec3 {
-        self.positions[vertex as usize].as_dvec3() * self.scale
+        self.places[vertex as usize]
+    }
+
+    /// Where a vertex is, in object units.
+    fn position(&self, vertex: u32) -> Vec3 {
+        (self.place(vertex) / self.scale).as_vec3()
+    }
+
+    fn positions(&self) -> Vec<Vec3> {
+        (0..self.places.len() as u32).map(|v| self.position(v)).collect()
     }
 
     fn around(&self) -> Around<'_> {
@@ -205,7 +215,7 @@ impl<'a> Greedy<'a> {
     fn read(&self, vertex: u32) -> u32 {
         let at = vertex as usize;
         let marks = u32::from(self.marks[at]) ^ self.fans.of(vertex).len() as u32;
-        marks ^ self.positions[at].x.to_bits() ^ self.quadrics[at].bits()
+        marks ^ self.places[at].x.to_bits() as u32 ^ self.quadrics[at].bits()
     }
 
     /// Contracts the choice of a vertex if it still stands and may be; returns whether it did.
@@ -238,10 +248,10 @@ impl<'a> Greedy<'a> {
         if let Some(layers) = &mut self.layers {
             layers.contract(Around { triangles: &self.triangles, fans: &self.fans }, &step.way);
         }
-        if step.position == self.positions[gone] {
+        if step.to == self.places[gone] {
             self.origins[kept] = self.origins[gone];
         }
-        self.positions[kept] = step.position;
+        self.places[kept] = step.to;
         self.quadrics[kept] = step.quadric;
         self.areas[kept] += self.areas[gone];
         self.error = self.error.max(step.error);

@@ -11,7 +11,7 @@ impl Greedy<'_> {
         let wedges = self.wedges(&left);
         let facet = |(&t, wedges): (&usize, &[u32; 3])| self.facet(t, wedges);
         let facets: Vec<Facet> = left.iter().zip(&wedges).map(facet).collect();
-        let mut rebuilt = Rebuilt::new(self.task.mesh, &self.positions, facets);
+        let mut rebuilt = Rebuilt::new(self.task.mesh, &self.positions(), facets);
         if let Some(layers) = &self.layers {
             layers.write(&self.corners(&left, &wedges, &rebuilt.wedges), &mut rebuilt.mesh);
         }

@@ -1,7 +1,5 @@
 //! Before the first contraction: an order for the memory, quadrics, borders and seams.
 
-use glam::{DVec3, Vec3};
-
 use super::choice::Choice;
 use super::{Greedy, mark};
 use crate::bake::simplify::Task;
@@ -16,16 +14,16 @@ use crate::bake::simplify::quadric::pairs::Pairs;
 use crate::bake::simplify::quadric::rest::Rest;
 use crate::bake::simplify::quadric::{GarlandHeckbert, Topology};
 use crate::bake::simplify::queue::Queue;
-use crate::bounds::Aabb;
+use crate::bake::simplify::workpiece::scale_of;
 
 impl<'a> Greedy<'a> {
     /// Sums up the quadrics and fills the queue.
     pub(in crate::bake::simplify::quadric) fn new(method: &'a GarlandHeckbert, task: &'a Task) -> Self {
         let Ordered { origins, triangles, old_triangles, weights } = Ordered::new(task);
         let count = origins.len();
-        let positions: Vec<Vec3> = origins.iter().map(|&v| task.mesh.positions[v as usize]).collect();
+        let positions = origins.iter().map(|&v| task.mesh.positions[v as usize]);
         let lock = |&v: &u32| if task.is_locked(v as usize) { mark::LOCKED } else { 0 };
-        let scale = scale_of(&positions);
+        let scale = scale_of(positions.clone());
         let layers =
             task.mesh.has_seams().then(|| Layers::new(task.mesh, &old_triangles, &method.attributes, scale));
         let mut greedy = Self {
@@ -33,7 +31,7 @@ impl<'a> Greedy<'a> {
             task,
             guard: Guard::new(method.least_turn, method.least_shape),
             scale,
-            positions,
+            places: positions.map(|p| p.as_dvec3() * scale).collect(),
             quadrics: vec![Quadric::default(); count],
             areas: vec![0.0; count],
             fans: Fans::new(count, &triangles),
@@ -70,7 +68,7 @@ impl<'a> Greedy<'a> {
         let distance = f64::from(self.method.pairs);
         if self.method.topology == Topology::Free && distance > 0.0 {
             let complex = Complex { triangles: &self.triangles, fans: &self.fans };
-            self.pairs = Some(Pairs::find(&self.positions, complex, distance));
+            self.pairs = Some(Pairs::find(&self.positions(), complex, distance));
         }
     }
 
@@ -89,16 +87,15 @@ impl<'a> Greedy<'a> {
                 self.areas[corner as usize] += area as f32;
             }
         }
-        let (mut uses, mut sides) = (vec![0; self.positions.len()], Vec::new());
-        for vertex in 0..self.positions.len() as u32 {
+        let (mut uses, mut sides) = (vec![0; self.places.len()], Vec::new());
+        for vertex in 0..self.places.len() as u32 {
             let fan = self.fans.of(vertex).iter();
             sides.clear();
             sides.extend(fan.map(|&t| (t as usize, others(self.triangles[t as usize], vertex))));
             self.find_borders(vertex, &sides, weights, &mut uses);
         }
         if let Some(mut layers) = self.layers.take() {
-            let places: Vec<DVec3> = (0..self.positions.len() as u32).map(|v| self.place(v)).collect();
-            layers.sum_up(&self.triangles, &places, weights);
+            layers.sum_up(&self.triangles, &self.places, weights);
             self.hold_seams(&layers, weights);
             self.layers = Some(layers);
         }
@@ -189,11 +186,4 @@ impl Ordered {
             origins,
         }
     }
-}
-
-/// The power of two that scales the box around the positions to a longest side between ½ and 1; 1 for a point.
-fn scale_of(positions: &[Vec3]) -> f64 {
-    let bounds = Aabb::around(positions.iter().copied());
-    let extent = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).max_element();
-    if extent > 0.0 { (-extent.log2().ceil()).exp2() } else { 1.0 }
 }

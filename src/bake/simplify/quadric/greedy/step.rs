@@ -1,6 +1,6 @@
 //! What a contraction means: where it goes, and what it costs.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::{Greedy, mark};
 use crate::bake::simplify::quadric::form::{Form, Quadric};
@@ -11,8 +11,9 @@ use crate::bake::simplify::quadric::placement::Spot;
 /// What contracting two vertices means.
 pub(super) struct Step {
     pub(super) way: Move,
-    /// Where they go, in object units, and the error of the shape that is seen from there.
-    pub(super) position: Vec3,
+    /// Where they go: the place of a position in single precision.
+    pub(super) to: DVec3,
+    /// The error of the shape, seen from there.
     pub(super) quadric: Quadric,
     /// Mean squared distance to the planes contracted so far, scaled.
     pub(super) error: f64,
@@ -25,22 +26,17 @@ impl Greedy<'_> {
         let shape = self.shape(kept, gone, edge);
         let spot = self.spot(kept, gone, edge, &(shape + self.looks(kept, gone, edge)));
         let area = f64::from(self.areas[kept as usize] + self.areas[gone as usize]);
-        let position = if spot.place == DVec3::ZERO {
-            self.positions[kept as usize]
+        let to = if spot.place == DVec3::ZERO {
+            self.place(kept)
         } else if spot.place == edge {
-            self.positions[gone as usize]
+            self.place(gone)
         } else {
-            ((self.place(kept) + spot.place) / self.scale).as_vec3()
+            ((self.place(kept) + spot.place) / self.scale).as_vec3().as_dvec3() * self.scale
         };
-        let moved = position.as_dvec3() * self.scale - self.place(kept);
+        let moved = to - self.place(kept);
         let error = if area > 0.0 { shape.at(spot.place).max(0.0) / area } else { 0.0 };
-        let way = Move {
-            kept,
-            gone,
-            edge,
-            to: if position == self.positions[gone as usize] { edge } else { moved },
-        };
-        Step { way, position, quadric: shape.seen_from(moved).pack(), error }
+        let way = Move { kept, gone, edge, to: if to == self.place(gone) { edge } else { moved } };
+        Step { way, to, quadric: shape.seen_from(moved).pack(), error }
     }
 
     /// The error of both ends of an edge, seen from the first.

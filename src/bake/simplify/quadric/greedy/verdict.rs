@@ -24,8 +24,7 @@ pub(super) enum Verdict {
 impl Greedy<'_> {
     /// Whether a step is allowed.
     pub(super) fn may_contract(&mut self, step: &Step) -> Verdict {
-        let &Step { way: Move { kept, gone, .. }, position, error, .. } = step;
-        let to = position.as_dvec3() * self.scale;
+        let &Step { way: Move { kept, gone, .. }, to, error, .. } = step;
         let both = self.marks[kept as usize] & self.marks[gone as usize];
         let may = both & mark::LOCKED == 0
             && self.in_units(error) <= self.most

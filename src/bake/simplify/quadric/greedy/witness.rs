@@ -50,7 +50,7 @@ impl<'g> Seen<'g, '_> {
 
     /// Where a vertex is, in object units.
     pub(in crate::bake) fn position(&self, vertex: u32) -> Vec3 {
-        self.greedy.positions[vertex as usize]
+        self.greedy.position(vertex)
     }
 
     /// The largest error of a contraction so far, as the method estimates it, in object units.
