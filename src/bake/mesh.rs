@@ -181,7 +181,7 @@ fn check_indices(what: &str, of: &str, indices: &[u32], count: usize) -> Result<
 }
 
 /// The rows of `kept`, in that order; an empty column stays empty.
-fn gather<T: Copy>(column: &[T], kept: &[u32]) -> Vec<T> {
+pub(super) fn gather<T: Copy>(column: &[T], kept: &[u32]) -> Vec<T> {
     let rows = if column.is_empty() { &[] } else { kept };
     rows.iter().map(|&row| column[row as usize]).collect()
 }

@@ -136,9 +136,10 @@ impl<'a> Task<'a> {
         }
         self.mesh.check().map_err(SimplifyError::Mesh)?;
         // What is not used may be anything, but mostly there is nothing to look for.
-        let are_finite = positions.iter().all(|p| p.is_finite());
-        (0..if are_finite { 0 } else { triangles.len() })
-            .try_for_each(|triangle| self.check_triangle(triangle))
+        if positions.iter().all(|p| p.is_finite()) {
+            return Ok(());
+        }
+        (0..triangles.len()).try_for_each(|triangle| self.check_triangle(triangle))
     }
 
     fn check_triangle(&self, triangle: usize) -> Result<(), SimplifyError> {

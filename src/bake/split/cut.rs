@@ -1,6 +1,7 @@
 //! A mesh for each part, and what it shares with the others.
 
 use super::Chunk;
+use crate::bake::mesh::gather;
 use crate::bake::{Group, Mesh};
 
 /// A position or an edge that no part uses so far, and one that several do.
@@ -78,13 +79,13 @@ fn chunk(mesh: &Mesh, part: &[u32], shared: &Shared, numbers: &mut Numbers) -> C
     border.sort_unstable();
     let chunk = Chunk {
         mesh: Mesh {
-            positions: rows(&mesh.positions, &positions),
+            positions: gather(&mesh.positions, &positions),
             wedges: wedges.iter().map(|&w| new_position(mesh.wedges[w as usize])).collect(),
             triangles: part.iter().map(|t| old(t).map(|w| numbers.wedges[w as usize])).collect(),
             groups: groups(&mesh.groups, part),
-            ..attributes(mesh, &wedges)
+            ..mesh.rows(&wedges)
         },
-        locked: rows(&shared.positions, &positions),
+        locked: gather(&shared.positions, &positions),
         triangles: part.to_vec(),
         border,
     };
@@ -103,24 +104,6 @@ fn renumber(used: impl Iterator<Item = u32>, numbers: &mut [u32]) -> Vec<u32> {
         }
     }
     kept
-}
-
-/// The name, and the attributes of these wedges.
-fn attributes(mesh: &Mesh, wedges: &[u32]) -> Mesh {
-    Mesh {
-        name: mesh.name.clone(),
-        normals: rows(&mesh.normals, wedges),
-        uvs: mesh.uvs.iter().map(|set| rows(set, wedges)).collect(),
-        colours: rows(&mesh.colours, wedges),
-        tangents: rows(&mesh.tangents, wedges),
-        skins: rows(&mesh.skins, wedges),
-        ..Mesh::default()
-    }
-}
-
-/// The rows of a column; none of one that is empty.
-fn rows<T: Copy>(column: &[T], kept: &[u32]) -> Vec<T> {
-    if column.is_empty() { Vec::new() } else { kept.iter().map(|&row| column[row as usize]).collect() }
 }
 
 /// The groups as far as the part has triangles of them.

@@ -35,11 +35,11 @@ impl Greedy<'_> {
         if !may {
             Verdict::No
         } else if self.keeps_topology(kept, gone) {
-            self.price_of_tips(step, to)
+            self.price_of_tips(step)
         } else {
             match self.method.topology {
                 Topology::Preserved => Verdict::No,
-                Topology::Free => self.price_of_topology(step, to),
+                Topology::Free => self.price_of_topology(step),
             }
         }
     }
@@ -62,11 +62,11 @@ impl Greedy<'_> {
 
     /// Quadrics know of planes, and not where they end: a needle may slide back along itself at hardly any cost. So how
     /// far both ends are from what would be left is looked at, too, when it is a contraction's turn.
-    fn price_of_tips(&self, step: &Step, to: DVec3) -> Verdict {
+    fn price_of_tips(&self, step: &Step) -> Verdict {
         if self.method.cost == Cost::Sum {
             return Verdict::Yes;
         }
-        let Move { kept, gone, .. } = step.way;
+        let &Step { way: Move { kept, gone, .. }, to, .. } = step;
         let (ends, paid) = ([kept, gone].map(|v| self.place(v)), self.choices[kept as usize].cost());
         let distances =
             |[a, b]: [usize; 2]| [self.rest[a].distance2(to, ends[0]), self.rest[b].distance2(to, ends[1])];
@@ -96,8 +96,8 @@ impl Greedy<'_> {
     /// Quadrics know of planes, and not that a part ends or a hole closes. So a step that changes the topology always
     /// costs what a tip does: by how far from what is left the vertices are that go. That pairs without an edge join is
     /// what they are for.
-    fn price_of_topology(&self, step: &Step, to: DVec3) -> Verdict {
-        let Move { kept, gone, .. } = step.way;
+    fn price_of_topology(&self, step: &Step) -> Verdict {
+        let &Step { way: Move { kept, gone, .. }, to, .. } = step;
         if self.around().edge(kept, gone).next().is_none() {
             return Verdict::Yes;
         }
