@@ -108,7 +108,7 @@ impl Form {
 
     /// `A·v`.
     #[inline(always)]
-    fn times(&self, v: DVec3) -> DVec3 {
+    pub(super) fn times(&self, v: DVec3) -> DVec3 {
         let (d, m) = (self.diagonal, self.mixed);
         DVec3::new(
             d.x * v.x + m.z * v.y + m.y * v.z,

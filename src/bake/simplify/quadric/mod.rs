@@ -6,6 +6,7 @@
 //! depart from the paper:
 //! - the best place is held near the middle of the edge by a weak spring, so that flat and straight parts are no
 //!   special case (see [`Placement::Optimal`]);
+//! - on what bulges vertices go a little further to the outside than the quadric says (see [`Placement::Balanced`]);
 //! - among contractions that cost next to nothing the shorter edge goes first, so that flat parts keep good triangles;
 //! - costs lie between the sum and the mean of squared distances, and know of tips (see [`Cost::Balanced`]);
 //! - a contraction that would turn a triangle over or make it a sliver is refused instead of made dearer;
@@ -21,6 +22,7 @@ mod guard;
 mod layer;
 mod layers;
 mod pairs;
+mod patch;
 mod placement;
 mod record;
 mod rest;
@@ -82,7 +84,7 @@ pub struct GarlandHeckbert {
 impl Default for GarlandHeckbert {
     fn default() -> Self {
         Self {
-            placement: Placement::Optimal,
+            placement: Placement::Balanced,
             cost: Cost::Balanced,
             topology: Topology::Preserved,
             pairs: 0.0,

@@ -7,9 +7,13 @@ use super::form::Form;
 /// Where to put the vertex that an edge is contracted to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Placement {
-    /// Where the error is least. Falls back to the best of the end points and the middle where that is far away.
-    #[default]
+    /// Where the error is least, as in the paper. Falls back to the best of the end points and the middle where that is
+    /// far away.
     Optimal,
+    /// The same, and on what bulges a little further to the outside, so that the surface is as far outside as inside: on
+    /// smooth shapes that takes a tenth to a fifth of the root mean square distance away.
+    #[default]
+    Balanced,
     /// At the end point of less error: the result's vertices are some of the old ones, attributes and all.
     Endpoint,
     /// Half way between the end points.
@@ -54,12 +58,18 @@ impl Spot {
 }
 
 impl Placement {
+    /// Whether it starts from where the error is least.
+    #[inline]
+    pub(super) fn is_least(self) -> bool {
+        matches!(self, Self::Optimal | Self::Balanced)
+    }
+
     /// Where an edge goes whose ends have the error `sum` together. All is seen from the first end; `edge` leads to the
     /// second, which stands for that `share` of the area.
     #[inline]
     pub(super) fn spot(self, edge: DVec3, share: impl FnOnce() -> f64, sum: &Form) -> Spot {
         match self {
-            Self::Optimal => optimal(edge, sum),
+            Self::Optimal | Self::Balanced => optimal(edge, sum),
             Self::Endpoint => Spot::new(DVec3::ZERO, sum).better(Spot::new(edge, sum)),
             Self::Midpoint => Spot::new(0.5 * edge, sum),
             Self::Average => Spot::new(share() * edge, sum),

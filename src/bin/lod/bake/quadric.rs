@@ -10,7 +10,7 @@ pub struct QuadricArgs {
     /// Whether holes may close, and handles and small parts go [default: preserved, or as the preset says]
     #[arg(long, value_enum)]
     topology: Option<TopologyKind>,
-    /// Where contracted vertices go [default: optimal]
+    /// Where contracted vertices go [default: balanced]
     #[arg(long, value_enum)]
     placement: Option<PlacementKind>,
     /// How much moving away from a border counts [default: 10, or as the preset says]
@@ -31,6 +31,8 @@ enum TopologyKind {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum PlacementKind {
+    /// Where the error is least, and a little further to the outside of what bulges
+    Balanced,
     /// Where the error is least
     Optimal,
     /// At the better end of the edge
@@ -66,6 +68,7 @@ impl TopologyKind {
 impl PlacementKind {
     fn placement(self) -> Placement {
         match self {
+            Self::Balanced => Placement::Balanced,
             Self::Optimal => Placement::Optimal,
             Self::Endpoint => Placement::Endpoint,
             Self::Midpoint => Placement::Midpoint,

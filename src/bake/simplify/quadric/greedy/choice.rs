@@ -3,7 +3,6 @@
 use super::{Greedy, LARGEST_FAN, mark};
 use crate::bake::simplify::link::others;
 use crate::bake::simplify::quadric::edges::ROOM;
-use crate::bake::simplify::quadric::placement::Placement;
 
 /// A contraction of a vertex, with one of higher index: the bits of its cost, then the partner, so that whole numbers
 /// order them by cost and then by partner.
@@ -92,8 +91,7 @@ impl Greedy<'_> {
     /// What contracting a vertex with each of some partners costs, [`ROOM`] at most.
     #[inline]
     fn costs(&mut self, vertex: u32, partners: &[u32]) -> [f32; ROOM] {
-        let is_plain =
-            self.layers.is_none() && self.method.placement == Placement::Optimal && !self.is_locked(vertex);
+        let is_plain = self.layers.is_none() && self.method.placement.is_least() && !self.is_locked(vertex);
         let mut costs = if is_plain { self.plain_costs(vertex, partners) } else { [f32::NAN; ROOM] };
         for (cost, &partner) in costs.iter_mut().zip(partners) {
             if cost.is_nan() || self.is_locked(partner) {

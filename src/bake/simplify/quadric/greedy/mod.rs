@@ -25,6 +25,7 @@ use crate::bake::simplify::quadric::guard::{Facing, Guard};
 use crate::bake::simplify::quadric::layer::{Around, Move};
 use crate::bake::simplify::quadric::layers::Layers;
 use crate::bake::simplify::quadric::pairs::Pairs;
+use crate::bake::simplify::quadric::patch::Patch;
 use crate::bake::simplify::quadric::rest::Rest;
 use crate::bake::simplify::quadric::{GarlandHeckbert, Topology};
 use crate::bake::simplify::queue::Queue;
@@ -82,8 +83,8 @@ pub(super) struct Greedy<'a> {
     /// Where vertices are: positions in double precision, scaled, which loses nothing.
     places: Vec<DVec3>,
     quadrics: Vec<Quadric>,
-    /// Weighted area that was contracted into each vertex.
-    areas: Vec<f32>,
+    /// What was contracted into each vertex.
+    patches: Vec<Patch>,
     triangles: Vec<[u32; 3]>,
     /// Per triangle, the old one that it was.
     old_triangles: Vec<u32>,
@@ -253,7 +254,7 @@ impl<'a> Greedy<'a> {
         }
         self.places[kept] = step.to;
         self.quadrics[kept] = step.quadric;
-        self.areas[kept] += self.areas[gone];
+        self.patches[kept] = step.patch;
         self.error = self.error.max(step.error);
         self.heirs[gone] = heir;
         self.marks[kept] |= self.marks[gone] & mark::INHERITED;

@@ -11,6 +11,7 @@ use crate::bake::simplify::quadric::form::Quadric;
 use crate::bake::simplify::quadric::guard::{Facing, Guard};
 use crate::bake::simplify::quadric::layers::Layers;
 use crate::bake::simplify::quadric::pairs::Pairs;
+use crate::bake::simplify::quadric::patch::Patch;
 use crate::bake::simplify::quadric::rest::Rest;
 use crate::bake::simplify::quadric::{GarlandHeckbert, Topology};
 use crate::bake::simplify::queue::Queue;
@@ -33,7 +34,7 @@ impl<'a> Greedy<'a> {
             scale,
             places: positions.map(|p| p.as_dvec3() * scale).collect(),
             quadrics: vec![Quadric::default(); count],
-            areas: vec![0.0; count],
+            patches: vec![Patch::default(); count],
             fans: Fans::new(count, &triangles),
             from: triangles.len(),
             live: triangles.len(),
@@ -84,7 +85,7 @@ impl<'a> Greedy<'a> {
             self.facings[t] = Facing::new(normal);
             for corner in corners {
                 self.quadrics[corner as usize] += plane;
-                self.areas[corner as usize] += area as f32;
+                self.patches[corner as usize].area += area as f32;
             }
         }
         let (mut uses, mut sides) = (vec![0; self.places.len()], Vec::new());

@@ -6,7 +6,8 @@ use super::{Greedy, mark};
 use crate::bake::simplify::quadric::form::{Form, Quadric};
 use crate::bake::simplify::quadric::layer::Move;
 use crate::bake::simplify::quadric::layers::Layers;
-use crate::bake::simplify::quadric::placement::Spot;
+use crate::bake::simplify::quadric::patch::Patch;
+use crate::bake::simplify::quadric::placement::{Placement, Spot};
 
 /// What contracting two vertices means.
 pub(super) struct Step {
@@ -15,6 +16,8 @@ pub(super) struct Step {
     pub(super) to: DVec3,
     /// The error of the shape, seen from there.
     pub(super) quadric: Quadric,
+    /// What went into both ends.
+    pub(super) patch: Patch,
     /// Mean squared distance to the planes contracted so far, scaled.
     pub(super) error: f64,
 }
@@ -25,18 +28,20 @@ impl Greedy<'_> {
         let edge = self.place(gone) - self.place(kept);
         let shape = self.shape(kept, gone, edge);
         let spot = self.spot(kept, gone, edge, &(shape + self.looks(kept, gone, edge)));
-        let area = f64::from(self.areas[kept as usize] + self.areas[gone as usize]);
-        let to = if spot.place == DVec3::ZERO {
+        let patch = self.patches[kept as usize].join(self.patches[gone as usize], edge);
+        let place = spot.place + self.lift([kept, gone], patch.moved(spot.place), &shape, spot.place);
+        let to = if place == DVec3::ZERO {
             self.place(kept)
-        } else if spot.place == edge {
+        } else if place == edge {
             self.place(gone)
         } else {
-            ((self.place(kept) + spot.place) / self.scale).as_vec3().as_dvec3() * self.scale
+            ((self.place(kept) + place) / self.scale).as_vec3().as_dvec3() * self.scale
         };
         let moved = to - self.place(kept);
-        let error = if area > 0.0 { shape.at(spot.place).max(0.0) / area } else { 0.0 };
+        let area = f64::from(patch.area);
+        let error = if area > 0.0 { shape.at(place).max(0.0) / area } else { 0.0 };
         let way = Move { kept, gone, edge, to: if to == self.place(gone) { edge } else { moved } };
-        Step { way, to, quadric: shape.seen_from(moved).pack(), error }
+        Step { way, to, quadric: shape.seen_from(moved).pack(), patch: patch.moved(moved), error }
     }
 
     /// The error of both ends of an edge, seen from the first.
@@ -69,16 +74,24 @@ impl Greedy<'_> {
     /// Where the contraction of two vertices goes, seen from the first.
     #[inline]
     fn spot(&self, a: u32, b: u32, edge: DVec3, sum: &Form) -> Spot {
-        let area = |v: u32| f64::from(self.areas[v as usize]);
-        let share = || {
-            let share = area(b) / (area(a) + area(b));
-            if share.is_finite() { share } else { 0.5 }
-        };
+        let share = || self.patches[a as usize].share_of(self.patches[b as usize]);
         match (self.is_locked(a), self.is_locked(b)) {
             (false, false) => self.method.placement.spot(edge, share, sum),
             (true, _) => Spot::new(DVec3::ZERO, sum),
             (_, true) => Spot::new(edge, sum),
         }
+    }
+
+    /// How much further two vertices go than to where their error is least; not at all where they are held to more than the
+    /// planes of a patch that is all around them.
+    #[inline]
+    fn lift(&self, ends: [u32; 2], patch: Patch, shape: &Form, place: DVec3) -> DVec3 {
+        const HELD: u8 = mark::LOCKED | mark::BORDER | mark::SEAM;
+        let are_held = ends.iter().any(|&v| self.marks[v as usize] & HELD != 0);
+        if are_held || self.method.placement != Placement::Balanced {
+            return DVec3::ZERO;
+        }
+        patch.lift(shape, place)
     }
 
     /// What contracting two vertices costs.

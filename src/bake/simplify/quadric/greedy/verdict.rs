@@ -82,8 +82,7 @@ impl Greedy<'_> {
 
     /// What a step costs at which both ends come to be that far, squared, from what is left.
     fn price_of_distance(&self, step: &Step, distance2: f64) -> f32 {
-        let Move { kept, gone, .. } = step.way;
-        let area = TIP * f64::from(self.areas[kept as usize] + self.areas[gone as usize]);
+        let area = TIP * f64::from(step.patch.area);
         self.method.cost.of(area * distance2, area)
     }
 
