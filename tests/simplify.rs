@@ -176,7 +176,6 @@ fn an_error_keeps_needles_that_free_topology_could_drop() {
     assert!(has_needle(Target::error(0.05)) && !has_needle(Target::error(0.2)));
 }
 
-/// A tube without rings along it, whose triangles are all slivers.
 #[test]
 fn a_balanced_sphere_is_nearer_on_average_and_hardly_farther_anywhere() {
     let sphere = icosphere(20);
@@ -194,6 +193,7 @@ fn a_balanced_sphere_is_nearer_on_average_and_hardly_farther_anywhere() {
     }
 }
 
+/// A tube without rings along it, whose triangles are all slivers.
 #[test]
 fn a_plain_cylinder_gets_fewer_sides() {
     let sides = 64;
@@ -472,8 +472,13 @@ proptest! {
     fn the_errors_are_those_of_the_paper((cuts, bump, seed) in (3..6u32, 1e-3..1e-2f32, any::<u32>())) {
         let mut sphere = icosphere(cuts);
         perturb(&mut sphere, bump, seed);
-        let method =
-            GarlandHeckbert { cost: Cost::Sum, placement: Placement::Optimal, least_turn: 0.0, least_shape: 0.0, ..Default::default() };
+        let method = GarlandHeckbert {
+            cost: Cost::Sum,
+            placement: Placement::Optimal,
+            least_turn: 0.0,
+            least_shape: 0.0,
+            ..Default::default()
+        };
         let slow = by_the_book::errors(&sphere, sphere.triangles.len() / 2);
         let mesh = Mesh::from(sphere);
         for &(triangles, error) in slow.iter().step_by(7) {

@@ -153,7 +153,8 @@ mod tests {
             let [one, other] =
                 [(a, areas[0]), (b, areas[1])].map(|(o, area)| Patch { area, offset: o.as_vec3() });
             let joined = one.join(other, edge);
-            let centre = (-a * f64::from(areas[0]) + (edge - b) * f64::from(areas[1])) / f64::from(areas[0] + areas[1]);
+            let [first, second] = areas.map(f64::from);
+            let centre = (-a * first + (edge - b) * second) / (first + second);
             prop_assert!((joined.offset.as_dvec3() + centre).length() < 1e-5);
             prop_assert_eq!(joined.area, areas[0] + areas[1]);
         }

@@ -10,8 +10,8 @@ pub enum Placement {
     /// Where the error is least, as in the paper. Falls back to the best of the end points and the middle where that is
     /// far away.
     Optimal,
-    /// The same, and on what bulges a little further to the outside, so that the surface is as far outside as inside: on
-    /// smooth shapes that takes a tenth to a fifth of the root mean square distance away.
+    /// The same, and on what bulges a little further to the outside, so that the surface is as far outside as inside: on a
+    /// sphere that takes more than a tenth of the root mean square distance away.
     #[default]
     Balanced,
     /// At the end point of less error: the result's vertices are some of the old ones, attributes and all.
