@@ -1,7 +1,8 @@
 """Who simplifies: each turns one PLY into another of so many triangles, and tells how many seconds of the processor's
 time that took.
 
-Reading and writing are not timed. VTK and MeshLab run in this process, the rest in one of their own per call.
+Reading and writing are not timed. VTK and MeshLab run in this process, the rest in one that stays as well: memory and
+code are there for everybody alike from the second call on.
 """
 
 import functools
@@ -28,14 +29,25 @@ def contestants(program, variants):
     return {**plain, **other} if variants else plain
 
 
-def ask(program, *arguments):
-    """The JSON that a command of the program prints."""
-    command = [program, *map(str, arguments)]
-    return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
+class Program:
+    """`simplify serve`, as long as somebody has questions."""
+
+    def __init__(self, path):
+        pipe = subprocess.PIPE
+        self.process = subprocess.Popen([path, "serve"], stdin=pipe, stdout=pipe, text=True, bufsize=1)
+
+    def ask(self, *words):
+        """The answer to a command."""
+        print(json.dumps([str(word) for word in words]), file=self.process.stdin, flush=True)
+        line = self.process.stdout.readline()
+        answer = json.loads(line) if line else {"error": "simplify is gone"}
+        if "error" in answer:
+            raise RuntimeError(answer["error"])
+        return answer
 
 
 def by_call(program, name, fine, triangles, coarse):
-    return ask(program, "lower", name, fine, triangles, coarse)["cpu_s"]
+    return program.ask("lower", name, fine, triangles, coarse)["cpu_s"]
 
 
 def by_vtk(fine, triangles, coarse, volume_preservation):

@@ -37,7 +37,7 @@ def main():
 
 def parse():
     parser = argparse.ArgumentParser(description="Compares simplifications.")
-    parser.add_argument("program")
+    parser.add_argument("program", type=contestants.Program)
     parser.add_argument("meshes", nargs="*", type=pathlib.Path)
     parser.add_argument("--rounds", type=int, default=3, help="times are the least of so many rounds")
     parser.add_argument("--variants", action="store_true", help="other settings of the contestants too")
@@ -53,9 +53,9 @@ def meshes(program, given, folder):
     for path in given:
         plain = unpacked(path, folder)
         clean = folder / f"{plain.stem}.ply"
-        contestants.ask(program, "clean", plain, clean)
+        program.ask("clean", plain, clean)
         yield clean
-    made = contestants.ask(program, "shapes", folder)
+    made = program.ask("shapes", folder)
     yield from (folder / f"{name}.ply" for name in made)
 
 
@@ -97,7 +97,7 @@ def race(arguments, mesh, share):
 
 def bound(program, original, fine, coarse):
     """What a table would store of lod-budget's level."""
-    return original.percent(contestants.ask(program, "bound", fine, coarse)["bound"])
+    return original.percent(program.ask("bound", fine, coarse)["bound"])
 
 
 @contextlib.contextmanager
