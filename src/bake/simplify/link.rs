@@ -60,6 +60,9 @@ pub(super) fn others(triangle: [u32; 3], vertex: u32) -> [u32; 2] {
     [next, last]
 }
 
+/// Per end of an edge and triangle of its fan, in its order, the [other](others) corners.
+pub(super) type Rings = [Vec<[u32; 2]>; 2];
+
 /// Triangles and the fans of their vertices.
 #[derive(Clone, Copy)]
 pub(super) struct Complex<'a> {
@@ -78,15 +81,30 @@ impl Complex<'_> {
         self.ring(a).filter(|pair| pair.contains(&b)).count()
     }
 
-    /// Whether contracting `a` and `b` keeps the topology. `at_border` says that both are on edges that have not
-    /// exactly two triangles. Costs as much as a walk around both.
+    /// Finds what is around both ends of an edge.
+    #[inline]
+    pub(super) fn find_rings(self, edge: [u32; 2], rings: &mut Rings) {
+        for (vertex, ring) in edge.into_iter().zip(rings) {
+            ring.clear();
+            ring.extend(self.ring(vertex));
+        }
+    }
+
+    /// Whether contracting an edge keeps the topology. `rings` are those of the ends. `at_border` says that both are on
+    /// edges that have not exactly two triangles. Costs as much as a walk around both.
     ///
     /// The neighbours that both have must be the far corners of the triangles at the edge, no two of them may make a
     /// triangle with each, and the edge itself must be at the border if both ends are.
-    pub(super) fn may_contract(self, a: u32, b: u32, at_border: bool, stamps: &mut Stamps) -> bool {
+    pub(super) fn may_contract(
+        self,
+        [a, b]: [u32; 2],
+        rings: &Rings,
+        at_border: bool,
+        stamps: &mut Stamps,
+    ) -> bool {
         let (mut at_edge, mut last) = (0, a);
         stamps.clear();
-        for [p, q] in self.ring(a) {
+        for &[p, q] in &rings[0] {
             stamps.insert(p);
             stamps.insert(q);
             at_edge += usize::from((p == b) | (q == b));
@@ -95,24 +113,22 @@ impl Complex<'_> {
         }
         let closes_border = at_border && at_edge == 2;
         let is_alone = at_edge == 1 && self.triangles_at(a, last) == 1 && self.triangles_at(b, last) == 1;
-        at_edge > 0 && !closes_border && !is_alone && self.shares_only(a, b, at_edge, stamps)
+        at_edge > 0 && !closes_border && !is_alone && shares_only(rings, at_edge, stamps)
     }
+}
 
-    /// Whether `a`, whose neighbours are stamped, and `b` share so many neighbours and no side of a triangle. Without
-    /// branches but for the rare: nobody can predict them.
-    fn shares_only(self, a: u32, b: u32, neighbours: usize, stamps: &mut Stamps) -> bool {
-        let mut shared = 0;
-        for [p, q] in self.ring(b) {
-            shared += usize::from(stamps.count(p)) + usize::from(stamps.count(q));
-            if stamps.contains(p) & stamps.contains(q) && self.has_side(a, p, q) {
-                return false;
-            }
-        }
-        shared == neighbours
+/// Whether two ends of an edge, the neighbours of the first of which are stamped, share so many neighbours and no side of
+/// a triangle. Without branches but for the rare: nobody can predict them.
+fn shares_only([first, second]: &Rings, neighbours: usize, stamps: &mut Stamps) -> bool {
+    let (mut shared, mut sides) = (0, 0);
+    for &[p, q] in second {
+        shared += usize::from(stamps.count(p)) + usize::from(stamps.count(q));
+        sides += usize::from(stamps.contains(p) & stamps.contains(q));
     }
+    shared == neighbours && (sides == 0 || !second.iter().any(|&[p, q]| has_side(first, p, q)))
+}
 
-    /// Whether the three are a triangle, either way around.
-    fn has_side(self, a: u32, p: u32, q: u32) -> bool {
-        self.ring(a).any(|pair| pair == [p, q] || pair == [q, p])
-    }
+/// Whether a vertex makes a triangle with two others, either way around.
+fn has_side(ring: &[[u32; 2]], p: u32, q: u32) -> bool {
+    ring.iter().any(|&pair| pair == [p, q] || pair == [q, p])
 }

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 use super::cluster::cloud::without_repeats;
 use super::fans::Fans;
-use super::link::{Complex, Stamps, others};
+use super::link::{Complex, Rings, Stamps, others};
 use super::rebuild::{Corner, Facet, Rebuilt};
 use super::{Progress, Simplified, Stopped, Task};
 use crate::bounds::Aabb;
@@ -42,6 +42,7 @@ pub(super) struct Workpiece<'a> {
     from: usize,
     live: usize,
     stamps: Stamps,
+    rings: Rings,
     fan: Vec<u32>,
 }
 
@@ -63,6 +64,7 @@ impl<'a> Workpiece<'a> {
             from: triangles.len(),
             live: triangles.len(),
             stamps: Stamps::new(count),
+            rings: Rings::default(),
             fan: Vec::new(),
             triangles,
             old,
@@ -141,7 +143,8 @@ impl<'a> Workpiece<'a> {
     /// Whether the contraction of an edge keeps the topology; `at_border` as [`Complex::may_contract`] has it.
     pub(super) fn keeps_topology(&mut self, a: u32, b: u32, at_border: bool) -> bool {
         let complex = Complex { triangles: &self.triangles, fans: &self.fans };
-        complex.may_contract(a, b, at_border, &mut self.stamps)
+        complex.find_rings([a, b], &mut self.rings);
+        complex.may_contract([a, b], &self.rings, at_border, &mut self.stamps)
     }
 
     /// Whether a vertex is on an edge that has not exactly two triangles.

@@ -67,19 +67,6 @@ impl AddAssign for Quadric {
 }
 
 impl Form {
-    /// Diagonal of A, the rest of it, b and c.
-    #[inline]
-    pub(super) fn to_array(self) -> [f64; 10] {
-        let (d, m, l) = (self.diagonal, self.mixed, self.linear);
-        [d.x, d.y, d.z, m.x, m.y, m.z, l.x, l.y, l.z, self.constant]
-    }
-
-    #[inline(always)]
-    pub(super) fn from_array([xx, yy, zz, yz, zx, xy, x, y, z, constant]: [f64; 10]) -> Self {
-        let diagonal = DVec3::new(xx, yy, zz);
-        Self { diagonal, mixed: DVec3::new(yz, zx, xy), linear: DVec3::new(x, y, z), constant }
-    }
-
     /// `weight` times the square of the linear function with that slope, and that value at the origin.
     #[inline]
     pub(super) fn square(slope: DVec3, value: f64, weight: f64) -> Self {

@@ -15,18 +15,21 @@ pub(super) struct Guard {
 ///
 /// Turns that are each allowed add up, in the end to a triangle on its back; what it once was does not move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Facing([i8; 3]);
+pub(super) struct Facing(u32);
 
 impl Facing {
     /// Of a unit normal, or of 0, which is no direction at all.
     pub(super) fn new(normal: DVec3) -> Self {
-        Self((127.0 * normal).to_array().map(|x| (x + 0.5_f64.copysign(x)) as i8))
+        let [x, y, z] = (127.0 * normal).to_array().map(|x| (x + 0.5_f64.copysign(x)) as i8 as u8);
+        Self(u32::from_le_bytes([x, y, z, 0]))
     }
 
     /// The normal, in 127ths.
-    #[inline]
+    #[inline(always)]
     pub(super) fn normal(self) -> DVec3 {
-        DVec3::from_array(self.0.map(f64::from))
+        // Shifts are what wide vectors have.
+        let from = |bit: u32| f64::from((self.0 << (24 - bit)) as i32 >> 24);
+        DVec3::new(from(0), from(8), from(16))
     }
 }
 

@@ -1,4 +1,4 @@
-//! What is left of a vertex's fan when the vertex becomes one with another, several triangles at once.
+//! What is left of two vertices' fans when the vertices become one, several triangles at once.
 //!
 //! Whether a contraction may be taken, and how far from the ends its result is, is asked of every triangle around it.
 //! The triangles are kept in columns here, four of each number at a time, for loops without branches that are compiled
@@ -16,20 +16,28 @@ const LANES: usize = 4;
 /// A number of each triangle of a block.
 type Column = [f64; LANES];
 
-/// Some triangles of a vertex.
-#[derive(Clone, Copy, Default)]
-struct Block {
-    /// Where the side across from the vertex starts and ends, seen along the triangle's direction.
-    start: [Column; 3],
-    end: [Column; 3],
-    /// Where the triangle once faced.
-    facing: [Column; 3],
+/// A triangle at an end of an edge.
+pub(super) struct Neighbour {
+    /// Whether it is left when the ends become one.
+    pub(super) stays: bool,
+    /// Where its side across from the end starts and ends, seen along its direction.
+    pub(super) side: [DVec3; 2],
+    /// Where it once faced.
+    pub(super) facing: Facing,
 }
 
-/// The triangles of a vertex but for those that go.
+/// Some triangles.
+#[derive(Clone, Copy, Default)]
+struct Block {
+    start: [Column; 3],
+    end: [Column; 3],
+    facing: [Facing; LANES],
+}
+
+/// The triangles of an end of an edge but for those that go.
 #[derive(Default)]
 pub(super) struct Rest {
-    /// Where the vertex is.
+    /// Where the end is.
     from: DVec3,
     /// Room for more triangles than there are.
     blocks: Vec<Block>,
@@ -37,28 +45,29 @@ pub(super) struct Rest {
 }
 
 impl Rest {
-    /// Empties it for a vertex that is at a place, with room for so many triangles.
-    pub(super) fn clear(&mut self, from: DVec3, room: usize) {
-        (self.from, self.len) = (from, 0);
-        if self.blocks.len() * LANES <= room {
-            self.blocks.resize(room / LANES + 1, Block::default());
+    /// Makes it that of an end that is at a place and has such triangles.
+    #[inline]
+    pub(super) fn fill(&mut self, from: DVec3, fan: impl ExactSizeIterator<Item = Neighbour>) {
+        if self.blocks.len() * LANES <= fan.len() {
+            self.blocks.resize(fan.len() / LANES + 1, Block::default());
         }
+        let mut len = 0;
+        for Neighbour { stays, side: [start, end], facing } in fan {
+            // Or only as if: nobody can predict which triangles stay.
+            let (block, lane) = (&mut self.blocks[len / LANES], len % LANES);
+            block.start.set(lane, start);
+            block.end.set(lane, end);
+            block.facing[lane] = facing;
+            len += usize::from(stays);
+        }
+        (self.from, self.len) = (from, len);
     }
 
-    /// Adds a triangle, or only makes as if: nobody can predict which triangles stay.
+    /// If all triangles of both ends may follow them to a place: how far, squared, each end is from what its own become,
+    /// or from that place where none is nearer.
     #[inline]
-    pub(super) fn add_if(&mut self, stays: bool, [start, end]: [DVec3; 2], facing: Facing) {
-        let (block, lane) = (&mut self.blocks[self.len / LANES], self.len % LANES);
-        block.start.set(lane, start);
-        block.end.set(lane, end);
-        block.facing.set(lane, facing.normal());
-        self.len += usize::from(stays);
-    }
-
-    /// Whether all triangles may follow the vertex to a place.
-    #[inline]
-    pub(super) fn may_go(&self, to: DVec3, guard: Guard) -> bool {
-        kernel::run(MayGo { rest: self, to, guard })
+    pub(super) fn follow(ends: &[Self; 2], to: DVec3, guard: Guard) -> Option<[f64; 2]> {
+        kernel::run(Follow { ends, to, guard })
     }
 
     /// The squared distance of a place from what the triangles become when the vertex goes to `to`; from `to` itself
@@ -96,25 +105,38 @@ impl Columns for [Column; 3] {
     }
 }
 
-struct MayGo<'a> {
-    rest: &'a Rest,
+struct Follow<'a> {
+    ends: &'a [Rest; 2],
     to: DVec3,
     guard: Guard,
 }
 
-impl Kernel for MayGo<'_> {
-    type Sum = bool;
+impl Kernel for Follow<'_> {
+    type Sum = Option<[f64; 2]>;
 
     #[inline(always)]
-    fn run(self) -> bool {
-        self.rest.blocks().all(|(block, len)| {
-            let mut may = [true; LANES];
-            for (lane, may) in may.iter_mut().enumerate() {
+    fn run(self) -> Self::Sum {
+        let [first, second] = self.ends;
+        Some([self.end(first)?, self.end(second)?])
+    }
+}
+
+impl Follow<'_> {
+    #[inline(always)]
+    fn end(&self, end: &Rest) -> Option<f64> {
+        let mut may = [true; LANES];
+        let mut least = [end.from.distance_squared(self.to); LANES];
+        for (block, len) in end.blocks() {
+            for lane in 0..LANES {
                 let side = [block.start.at(lane), block.end.at(lane)];
-                *may = self.guard.allows(self.rest.from, self.to, side, block.facing.at(lane));
+                let allows = self.guard.allows(end.from, self.to, side, block.facing[lane].normal());
+                may[lane] &= allows | (lane >= len);
+                let other = distance2(end.from, [self.to, side[0], side[1]], least[lane]);
+                least[lane] = if lane < len { other } else { least[lane] };
             }
-            !may[..len].contains(&false)
-        })
+        }
+        let [a, b, c, d] = may;
+        (a & b & c & d).then(|| least.into_iter().fold(f64::INFINITY, f64::min))
     }
 }
 
@@ -160,20 +182,27 @@ mod tests {
     proptest! {
         #[test]
         fn many_triangles_are_what_each_is_alone(
-            triangles in prop::collection::vec(triangle(), 0..20),
-            [from, to, facing, place] in [point(), point(), point(), point()],
+            fans in prop::array::uniform2(prop::collection::vec(triangle(), 0..12)),
+            ends in [point(), point()],
+            [to, facing, place] in [point(), point(), point()],
         ) {
-            let (mut rest, guard) = (Rest::default(), Guard::new(0.2, 0.02));
+            let (mut rest, guard) = (<[Rest; 2]>::default(), Guard::new(0.2, 0.02));
             let facing = Facing::new(facing);
-            rest.clear(from, triangles.len());
-            for &(side, stays) in &triangles {
-                rest.add_if(stays, side, facing);
+            let neighbour = |&(side, stays): &([DVec3; 2], bool)| Neighbour { stays, side, facing };
+            for ((rest, fan), &end) in rest.iter_mut().zip(&fans).zip(&ends) {
+                rest.fill(end, fan.iter().map(neighbour));
             }
-            let staying = || triangles.iter().filter(|(_, stays)| *stays);
-            let mut all = staying().map(|(side, _)| guard.allows(from, to, *side, facing.normal()));
-            prop_assert_eq!(rest.may_go(to, guard), all.all(|may| may));
-            let each = staying().map(|([p, q], _)| distance2(place, [to, *p, *q], f64::INFINITY));
-            prop_assert_eq!(rest.distance2(to, place), each.fold(place.distance_squared(to), f64::min));
+
+            let staying = |end: usize| fans[end].iter().filter(|(_, stays)| *stays).map(|(side, _)| *side);
+            let distance = |end, place: DVec3| {
+                let each = staying(end).map(|[p, q]| distance2(place, [to, p, q], f64::INFINITY));
+                each.fold(place.distance_squared(to), f64::min)
+            };
+            let may = |end: usize| staying(end).all(|side| guard.allows(ends[end], to, side, facing.normal()));
+            let own = [distance(0, ends[0]), distance(1, ends[1])];
+            prop_assert_eq!(Rest::follow(&rest, to, guard), (may(0) && may(1)).then_some(own));
+            let distances = rest.each_ref().map(|rest| rest.distance2(to, place));
+            prop_assert_eq!(distances, [distance(0, place), distance(1, place)]);
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Which contraction of a vertex comes first.
 
+use super::sieve::Sieve;
 use super::{Greedy, LARGEST_FAN, mark};
 use crate::bake::simplify::link::others;
-use crate::bake::simplify::quadric::edges::ROOM;
+use crate::bake::simplify::quadric::edges::{self, LANES};
 
 /// A contraction of a vertex, with one of higher index: the bits of its cost, then the partner, so that whole numbers
 /// order them by cost and then by partner.
@@ -55,12 +56,16 @@ impl Greedy<'_> {
     fn cheapest(&mut self, vertex: u32, from: Choice) -> Choice {
         let mut partners = std::mem::take(&mut self.partners);
         self.find_partners(vertex, &mut partners);
+        let is_plain = self.layers.is_none() && self.method.placement.is_least() && !self.is_locked(vertex);
         let mut cheapest = Choice::NONE;
-        for some in partners.chunks(ROOM) {
-            let costs = self.costs(vertex, some);
-            for (&partner, cost) in some.iter().zip(costs) {
+        for &some in partners.list().as_chunks().0 {
+            let costs = if is_plain { self.plain_costs(vertex, some) } else { [f32::NAN; LANES] };
+            for (partner, cost) in some.into_iter().zip(costs) {
+                let is_known = (!cost.is_nan() & !self.is_locked(partner)) | (partner == vertex);
+                let cost = if is_known { cost } else { self.cost(vertex, partner) };
                 let choice = Choice::new(cost, partner);
-                cheapest = if choice >= from { cheapest.min(choice) } else { cheapest };
+                let is_one = (choice >= from) & (partner != vertex);
+                cheapest = if is_one { cheapest.min(choice) } else { cheapest };
             }
         }
         self.partners = partners;
@@ -69,57 +74,32 @@ impl Greedy<'_> {
 
     /// Lists what a vertex may be contracted with.
     ///
-    /// Where every edge has as many triangles in either direction it is enough to look at one corner of each.
-    fn find_partners(&self, vertex: u32, partners: &mut Vec<u32>) {
-        partners.clear();
+    /// Where every edge has as many triangles in either direction it is enough to look at one corner of each. Filled up to
+    /// whole vectors with the vertex itself.
+    fn find_partners(&self, vertex: u32, partners: &mut Sieve<u32>) {
         let fan = self.fans.of(vertex);
-        if fan.is_empty() || fan.len() > LARGEST_FAN {
-            return;
-        }
-        let sides = fan.iter().map(|&t| others(self.triangles[t as usize], vertex));
-        if self.marks[vertex as usize] & mark::ODD != 0 {
-            partners.extend(sides.flatten().filter(|&p| p > vertex));
-        } else {
-            retain_above(vertex, sides.map(|[p, _]| p), partners);
-        }
-        if let Some(pairs) = &self.pairs {
-            let is_left = |p: &&u32| **p > vertex && !self.fans.of(**p).is_empty();
-            partners.extend(pairs.of(vertex).iter().filter(is_left));
-        }
-    }
-
-    /// What contracting a vertex with each of some partners costs, [`ROOM`] at most.
-    #[inline]
-    fn costs(&mut self, vertex: u32, partners: &[u32]) -> [f32; ROOM] {
-        let is_plain = self.layers.is_none() && self.method.placement.is_least() && !self.is_locked(vertex);
-        let mut costs = if is_plain { self.plain_costs(vertex, partners) } else { [f32::NAN; ROOM] };
-        for (cost, &partner) in costs.iter_mut().zip(partners) {
-            if cost.is_nan() || self.is_locked(partner) {
-                *cost = self.cost(vertex, partner);
+        let fan = if fan.len() > LARGEST_FAN { &[] } else { fan };
+        let is_odd = self.marks[vertex as usize] & mark::ODD != 0;
+        let pairs = self.pairs.as_ref().filter(|_| !fan.is_empty()).map_or(&[][..], |pairs| pairs.of(vertex));
+        partners.clear(2 * fan.len() + pairs.len() + LANES);
+        for &triangle in fan {
+            let [p, q] = others(self.triangles[triangle as usize], vertex);
+            partners.add_if(p > vertex, p);
+            if is_odd {
+                partners.add_if(q > vertex, q);
             }
         }
-        costs
+        for &partner in pairs {
+            partners.add_if(partner > vertex && !self.fans.of(partner).is_empty(), partner);
+        }
+        partners.fill_up(LANES, vertex);
     }
 
-    /// The same where neither end is locked, as far as there is a best place in reach.
+    /// What contracting a vertex with each of some partners costs where neither end is locked: not a number where there is
+    /// no best place in reach.
     #[inline]
-    fn plain_costs(&mut self, vertex: u32, partners: &[u32]) -> [f32; ROOM] {
-        let Self { edges, places, quadrics, .. } = self;
-        let place = |v: u32| places[v as usize];
-        let at = place(vertex);
-        let ends = partners.iter().map(|&p| (&quadrics[p as usize], place(p) - at));
-        edges.costs(&quadrics[vertex as usize], ends, self.method.cost)
+    fn plain_costs(&self, vertex: u32, partners: [u32; LANES]) -> [f32; LANES] {
+        let end = |v: u32| (&self.quadrics[v as usize], &self.places[v as usize]);
+        edges::costs(end(vertex), partners.map(end), self.method.cost)
     }
-}
-
-/// Replaces a list by those of some vertices that are above one. Without branches: nobody can predict which are.
-#[inline]
-fn retain_above(vertex: u32, some: impl ExactSizeIterator<Item = u32>, list: &mut Vec<u32>) {
-    list.resize(some.len(), 0);
-    let mut len = 0;
-    for other in some {
-        list[len] = other;
-        len += usize::from(other > vertex);
-    }
-    list.truncate(len);
 }

@@ -1,8 +1,10 @@
 //! The greedy: contract the edge that costs least, until there are few enough triangles.
 
 mod choice;
+mod disturbance;
 mod outcome;
 mod prepare;
+mod sieve;
 mod step;
 mod verdict;
 pub(in crate::bake) mod witness;
@@ -13,13 +15,14 @@ use std::ops::ControlFlow;
 use glam::{DVec3, Vec3};
 
 use choice::Choice;
+use disturbance::Disturbance;
+use sieve::Sieve;
 use step::Step;
 use verdict::Verdict;
 use witness::{Seen, Witness};
 
 use crate::bake::simplify::fans::Fans;
-use crate::bake::simplify::link::{Stamps, others};
-use crate::bake::simplify::quadric::edges::Edges;
+use crate::bake::simplify::link::{Rings, Stamps};
 use crate::bake::simplify::quadric::form::Quadric;
 use crate::bake::simplify::quadric::guard::{Facing, Guard};
 use crate::bake::simplify::quadric::layer::{Around, Move};
@@ -117,12 +120,13 @@ pub(super) struct Greedy<'a> {
     /// Who looks on, if anybody does.
     pub(super) witness: Option<&'a mut dyn Witness>,
     /// The fan of a contracted vertex, in the making.
-    fan: Vec<u32>,
+    fan: Sieve<u32>,
+    /// The triangles that went with it, and their other corners.
+    going: Sieve<(u32, u32)>,
     /// What a vertex may be contracted with.
-    partners: Vec<u32>,
-    /// What is known of the edges to them.
-    edges: Edges,
-    /// What would be left of both ends of the last contraction that was looked at.
+    partners: Sieve<u32>,
+    /// What is around both ends of the last contraction that was looked at, and what would be left of it.
+    rings: Rings,
     rest: [Rest; 2],
 }
 
@@ -274,84 +278,46 @@ impl<'a> Greedy<'a> {
         }
     }
 
-    /// Gives `kept` the triangles of both but for those at the edge, which go.
+    /// Gives `kept` the triangles of both but for those at the edge, which go, and has all neighbours choose again.
     fn merge_fans(&mut self, kept: u32, gone: u32) {
-        let mut fan = std::mem::take(&mut self.fan);
-        fan.clear();
-        fan.extend_from_slice(self.fans.of(kept));
-        fan.retain(|&t| self.keeps(t, kept, gone));
-        let first_of_gone = fan.len();
-        fan.extend_from_slice(self.fans.of(gone));
-        let mut at = first_of_gone;
-        for i in first_of_gone..fan.len() {
-            if self.hand_over(fan[i], kept, gone) {
-                fan[at] = fan[i];
-                at += 1;
-            }
+        let Self { fans, triangles, fan, going, .. } = self;
+        let (marks, choices, queue) = (&mut self.marks, &self.choices, &mut self.queue);
+        let is_odd = marks[kept as usize] & mark::ODD != 0;
+        let mut disturbance = Disturbance { edge: [kept, gone], marks, choices, queue };
+        fan.clear(self.rings[0].len() + self.rings[1].len() + 1);
+        going.clear(self.rings[1].len() + 1);
+        for (&triangle, &[p, q]) in fans.of(kept).iter().zip(&self.rings[0]) {
+            disturbance.reach_side([p, q], is_odd);
+            fan.add_if((p != gone) & (q != gone), triangle);
         }
-        fan.truncate(at);
-        self.fans.replace(gone, &[]);
-        self.fans.replace(kept, &fan);
-        self.fan = fan;
+        for (&triangle, &[p, q]) in fans.of(gone).iter().zip(&self.rings[1]) {
+            disturbance.reach_side([p, q], is_odd);
+            let (goes, far) = ((p == kept) | (q == kept), if p == kept { q } else { p });
+            let corners = &mut triangles[triangle as usize];
+            let instead = |corner| if corner == gone { kept } else { corner };
+            *corners = corners.map(|corner| if goes { GONE[0] } else { instead(corner) });
+            fan.add_if(!goes, triangle);
+            going.add_if(goes, (far, triangle));
+        }
+        for &(far, triangle) in going.list() {
+            fans.remove(far, triangle);
+        }
+        self.live -= going.list().len();
+        fans.replace(gone, &[]);
+        fans.replace(kept, fan.list());
     }
 
     /// Gives `kept` the pairs of both.
     fn merge_pairs(&mut self, kept: u32, gone: u32) {
         let Some(mut pairs) = self.pairs.take() else { return };
+        let (marks, choices, queue) = (&mut self.marks, &self.choices, &mut self.queue);
+        let mut disturbance = Disturbance { edge: [kept, gone], marks, choices, queue };
         for &partner in pairs.of(kept).iter().chain(pairs.of(gone)) {
             if partner != kept && partner != gone {
-                self.disturb(partner, kept, gone);
+                disturbance.reach(partner);
             }
         }
         pairs.contract(kept, gone);
         self.pairs = Some(pairs);
-    }
-
-    /// Whether a triangle of `kept` stays one.
-    fn keeps(&mut self, triangle: u32, kept: u32, gone: u32) -> bool {
-        let [p, q] = others(self.triangles[triangle as usize], kept);
-        self.disturb_side([p, q], kept, gone);
-        (p != gone) & (q != gone)
-    }
-
-    /// Makes a triangle of `gone` one of `kept`, or removes it; returns whether it stays.
-    fn hand_over(&mut self, triangle: u32, kept: u32, gone: u32) -> bool {
-        let [p, q] = others(self.triangles[triangle as usize], gone);
-        let goes = (p == kept) | (q == kept);
-        self.disturb_side([p, q], kept, gone);
-        if goes {
-            self.live -= 1;
-            self.triangles[triangle as usize] = GONE;
-            self.fans.remove(if p == kept { q } else { p }, triangle);
-        } else {
-            let corners = &mut self.triangles[triangle as usize];
-            *corners = corners.map(|corner| if corner == gone { kept } else { corner });
-        }
-        !goes
-    }
-
-    /// Has two neighbours in a triangle choose again, or only the first: where every edge has as many triangles in either
-    /// direction the second is the first of another.
-    #[inline]
-    fn disturb_side(&mut self, [next, last]: [u32; 2], kept: u32, gone: u32) {
-        self.disturb(next, kept, gone);
-        if self.marks[kept as usize] & mark::ODD != 0 {
-            self.disturb(last, kept, gone);
-        }
-    }
-
-    /// Has a neighbour of a contraction choose again, when its turn comes, if its choice is one of the two or if it had
-    /// to settle for one. Any other choice is still its cheapest, since what has changed only became dearer.
-    #[inline]
-    fn disturb(&mut self, vertex: u32, kept: u32, gone: u32) {
-        let marks = &mut self.marks[vertex as usize];
-        let choice = self.choices[vertex as usize];
-        let is_meant =
-            (choice.partner() == kept) | (choice.partner() == gone) | (*marks & mark::SETTLED != 0);
-        *marks |= mark::DIRTY * u8::from(is_meant);
-        if *marks & (mark::IDLE | mark::DIRTY) == mark::IDLE | mark::DIRTY {
-            *marks &= !mark::IDLE;
-            self.queue.push(choice.cost(), vertex);
-        }
     }
 }

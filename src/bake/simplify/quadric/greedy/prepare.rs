@@ -1,12 +1,12 @@
 //! Before the first contraction: an order for the memory, quadrics, borders and seams.
 
 use super::choice::Choice;
+use super::sieve::Sieve;
 use super::{Greedy, mark};
 use crate::bake::simplify::Task;
 use crate::bake::simplify::fans::Fans;
-use crate::bake::simplify::link::{Complex, Stamps, others};
+use crate::bake::simplify::link::{Complex, Rings, Stamps, others};
 use crate::bake::simplify::order::{along_curve, by_key};
-use crate::bake::simplify::quadric::edges::Edges;
 use crate::bake::simplify::quadric::form::Quadric;
 use crate::bake::simplify::quadric::guard::{Facing, Guard};
 use crate::bake::simplify::quadric::layers::Layers;
@@ -54,10 +54,11 @@ impl<'a> Greedy<'a> {
             most: -1.0,
             error: 0.0,
             witness: None,
-            fan: Vec::new(),
-            partners: Vec::new(),
-            edges: Edges::new(),
-            rest: [Rest::default(), Rest::default()],
+            fan: Sieve::default(),
+            going: Sieve::default(),
+            partners: Sieve::default(),
+            rings: Rings::default(),
+            rest: <[Rest; 2]>::default(),
         };
         greedy.sum_up(&weights);
         greedy.find_pairs();

@@ -1,12 +1,11 @@
 //! Which contractions are allowed.
 
-use glam::DVec3;
-
 use super::step::Step;
 use super::{Greedy, LARGEST_FAN, mark};
 use crate::bake::simplify::link::{Complex, others};
 use crate::bake::simplify::quadric::layer::Move;
 use crate::bake::simplify::quadric::layers::Layers;
+use crate::bake::simplify::quadric::rest::{Neighbour, Rest};
 use crate::bake::simplify::quadric::{Cost, Topology};
 
 /// A contraction costs no less than if this share of all that went into both ends were as far off as the ends will be:
@@ -29,13 +28,14 @@ impl Greedy<'_> {
         let may = both & mark::LOCKED == 0
             && self.in_units(error) <= self.most
             && !self.fans.of(gone).is_empty()
-            && self.fans.of(kept).len() + self.fans.of(gone).len() <= LARGEST_FAN
-            && self.guard_allows(0, [kept, gone], to)
-            && self.guard_allows(1, [gone, kept], to);
+            && self.fans.of(kept).len() + self.fans.of(gone).len() <= LARGEST_FAN;
         if !may {
-            Verdict::No
-        } else if self.keeps_topology(kept, gone) {
-            self.price_of_tips(step)
+            return Verdict::No;
+        }
+        self.find_rest(kept, gone);
+        let Some(distances2) = Rest::follow(&self.rest, to, self.guard) else { return Verdict::No };
+        if self.keeps_topology(kept, gone) {
+            self.price_of_tips(step, distances2)
         } else {
             match self.method.topology {
                 Topology::Preserved => Verdict::No,
@@ -44,38 +44,37 @@ impl Greedy<'_> {
         }
     }
 
-    /// Whether the triangles of the end `side` of a contraction, but for those that go with the edge to the other, may
-    /// follow it; finds what those are.
-    fn guard_allows(&mut self, side: usize, [vertex, other]: [u32; 2], to: DVec3) -> bool {
-        let mut rest = std::mem::take(&mut self.rest[side]);
-        let fan = self.fans.of(vertex);
-        rest.clear(self.place(vertex), fan.len());
-        for &triangle in fan {
-            let [p, q] = others(self.triangles[triangle as usize], vertex);
-            let stays = (p != other) & (q != other);
-            rest.add_if(stays, [self.place(p), self.place(q)], self.facings[triangle as usize]);
+    /// Finds what is around both ends of an edge, and what of that would be left.
+    fn find_rest(&mut self, kept: u32, gone: u32) {
+        let (places, facings) = (&self.places[..], &self.facings[..]);
+        let ends = [[kept, gone], [gone, kept]];
+        for ((ring, rest), [vertex, other]) in self.rings.iter_mut().zip(&mut self.rest).zip(ends) {
+            let fan = self.fans.of(vertex);
+            ring.resize(fan.len(), [0; 2]);
+            let neighbours = fan.iter().zip(ring).map(|(&triangle, side)| {
+                let [p, q] = others(self.triangles[triangle as usize], vertex);
+                *side = [p, q];
+                Neighbour {
+                    stays: (p != other) & (q != other),
+                    side: [places[p as usize], places[q as usize]],
+                    facing: facings[triangle as usize],
+                }
+            });
+            rest.fill(places[vertex as usize], neighbours);
         }
-        let may_go = rest.may_go(to, self.guard);
-        self.rest[side] = rest;
-        may_go
     }
 
     /// Quadrics know of planes, and not where they end: a needle may slide back along itself at hardly any cost. So how
-    /// far both ends are from what would be left is looked at, too, when it is a contraction's turn.
-    fn price_of_tips(&self, step: &Step) -> Verdict {
-        if self.method.cost == Cost::Sum {
+    /// far both ends are from what would be left is looked at, too, when it is a contraction's turn. `own` is how far,
+    /// squared, each is from what its own triangles become: where an end was there is mostly one of those.
+    fn price_of_tips(&self, step: &Step, own: [f64; 2]) -> Verdict {
+        let paid = self.choices[step.way.kept as usize].cost();
+        if self.method.cost == Cost::Sum || self.price_of_distance(step, own[0].max(own[1])) <= paid {
             return Verdict::Yes;
         }
         let &Step { way: Move { kept, gone, .. }, to, .. } = step;
-        let (ends, paid) = ([kept, gone].map(|v| self.place(v)), self.choices[kept as usize].cost());
-        let distances =
-            |[a, b]: [usize; 2]| [self.rest[a].distance2(to, ends[0]), self.rest[b].distance2(to, ends[1])];
-        // Where an end was there is mostly a triangle of its own.
-        let own = distances([0, 1]);
-        if self.price_of_distance(step, own[0].max(own[1])) <= paid {
-            return Verdict::Yes;
-        }
-        let other = distances([1, 0]);
+        let distance2 = |end: usize, vertex| self.rest[end].distance2(to, self.place(vertex));
+        let other = [distance2(1, kept), distance2(0, gone)];
         let price = self.price_of_distance(step, own[0].min(other[0]).max(own[1].min(other[1])));
         if price > paid { Verdict::For(price) } else { Verdict::Yes }
     }
@@ -89,7 +88,8 @@ impl Greedy<'_> {
     fn keeps_topology(&mut self, kept: u32, gone: u32) -> bool {
         let at_border = self.marks[kept as usize] & self.marks[gone as usize] & mark::BORDER != 0;
         let complex = Complex { triangles: &self.triangles, fans: &self.fans };
-        complex.may_contract(kept, gone, at_border, &mut self.stamps) && self.keeps_charts(kept, gone)
+        complex.may_contract([kept, gone], &self.rings, at_border, &mut self.stamps)
+            && self.keeps_charts(kept, gone)
     }
 
     /// Quadrics know of planes, and not that a part ends or a hole closes. So a step that changes the topology always
@@ -101,9 +101,8 @@ impl Greedy<'_> {
             return Verdict::Yes;
         }
         let going = self.stranded(kept, gone).chain([kept, gone]);
-        let distance2 = |v| self.rest.each_ref().map(|rest| rest.distance2(to, self.place(v)));
-        let farthest2 =
-            going.map(|v| distance2(v).into_iter().fold(f64::INFINITY, f64::min)).fold(0.0, f64::max);
+        let distances2 = |v| self.rest.each_ref().map(|rest| rest.distance2(to, self.place(v)));
+        let farthest2 = going.map(distances2).map(|[a, b]| a.min(b)).fold(0.0, f64::max);
         let price = self.price_of_distance(step, farthest2);
         if self.in_units(farthest2) > self.most {
             Verdict::No
