@@ -21,8 +21,9 @@ pub(super) fn along_curve(positions: &[Vec3], triangles: impl Iterator<Item = [u
     let extent = (bounds.max.as_dvec3() - corner).max_element().max(f64::MIN_POSITIVE);
     let cells = f64::from((1u32 << BITS) - 1) / extent;
     let place = |&v: &u32| {
-        let cell = ((positions[v as usize].as_dvec3() - corner) * cells).as_u64vec3();
-        (v, (spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2) as u32)
+        let cell = ((positions[v as usize].as_dvec3() - corner) * cells).as_uvec3();
+        let [x, y, z] = cell.to_array().map(|x| spread(u64::from(x)) as u32);
+        (v, x | y << 1 | z << 2)
     };
     let mut places: Vec<(u32, u32)> = used.iter().map(place).collect();
     for digit in 0..3 {

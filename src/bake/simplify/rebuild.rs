@@ -44,11 +44,12 @@ impl Rebuilt {
         let facets: Vec<Facet> = order.iter().map(|&i| facets[i as usize]).collect();
         let corners: Vec<Corner> = facets.iter().flat_map(|facet| facet.corners).collect();
         let (vertices, position_of) = used(places.len(), &corners);
-        let tells_apart = old.has_attributes();
-        let look = |c: &Corner| if tells_apart { c.wedge } else { 0 };
-        let looks: Vec<[u32; 2]> =
-            corners.iter().map(|c| [position_of[c.vertex as usize], look(c)]).collect();
-        let same = alike(&looks, vertices.len());
+        let looks = corners.iter().map(|c| [position_of[c.vertex as usize], c.wedge]);
+        let same = if old.has_attributes() {
+            alike(&looks.collect::<Vec<_>>(), vertices.len())
+        } else {
+            at_one_position(looks.map(|[position, _]| position), vertices.len())
+        };
         let wedges: Vec<u32> = same.firsts.iter().map(|&first| corners[first as usize].wedge).collect();
         let mut mesh = old.rows(&wedges);
         mesh.positions = vertices.iter().map(|&v| places[v as usize]).collect();
@@ -86,6 +87,22 @@ fn alike(looks: &[[u32; 2]], positions: usize) -> Classes {
         }
     }
     numbered(&first_of)
+}
+
+/// Which corners are at the same of so many positions, given the position of each.
+fn at_one_position(corners: impl ExactSizeIterator<Item = u32>, positions: usize) -> Classes {
+    const NONE: u32 = u32::MAX;
+    let mut class_at = vec![NONE; positions];
+    let mut classes = Classes { of: Vec::with_capacity(corners.len()), firsts: Vec::with_capacity(positions) };
+    for (corner, position) in (0..).zip(corners) {
+        let class = &mut class_at[position as usize];
+        if *class == NONE {
+            *class = classes.firsts.len() as u32;
+            classes.firsts.push(corner);
+        }
+        classes.of.push(*class);
+    }
+    classes
 }
 
 /// The groups of facets in the order of the old triangles; those without a triangle go.

@@ -1,6 +1,6 @@
 //! The quadric error of a point: a quadratic form, which is the weighted sum of squared distances to planes.
 
-use std::ops::{Add, AddAssign};
+use std::ops::Add;
 
 use glam::{DVec3, Vec3};
 
@@ -38,6 +38,16 @@ impl Quadric {
         Self { diagonal: diagonal.to_array(), mixed: mixed.to_array(), ..Self::default() }
     }
 
+    /// Adds what [`Quadric::plane`] is.
+    #[inline]
+    pub(super) fn add_plane(&mut self, n: DVec3, weight: f64) {
+        let plane = Self::plane(n, weight);
+        for i in 0..3 {
+            self.diagonal[i] += plane.diagonal[i];
+            self.mixed[i] += plane.mixed[i];
+        }
+    }
+
     /// Some of its bits, for who wants it in the cache.
     #[inline]
     pub(super) fn bits(&self) -> u32 {
@@ -52,17 +62,6 @@ impl Quadric {
             linear: Vec3::from_array(self.linear).as_dvec3(),
             constant: f64::from(self.constant),
         }
-    }
-}
-
-/// The sum of two as they are seen from the same vertex.
-impl AddAssign for Quadric {
-    #[inline]
-    fn add_assign(&mut self, other: Self) {
-        self.diagonal = (DVec3::from_array(self.diagonal) + DVec3::from_array(other.diagonal)).to_array();
-        self.mixed = (DVec3::from_array(self.mixed) + DVec3::from_array(other.mixed)).to_array();
-        self.linear = (Vec3::from_array(self.linear) + Vec3::from_array(other.linear)).to_array();
-        self.constant += other.constant;
     }
 }
 

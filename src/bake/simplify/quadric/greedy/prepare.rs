@@ -82,10 +82,9 @@ impl<'a> Greedy<'a> {
             let across = (b - a).cross(c - a);
             let normal = across.normalize_or_zero();
             let area = 0.5 * weight * across.length();
-            let plane = Quadric::plane(normal, area);
             self.facings[t] = Facing::new(normal);
             for corner in corners {
-                self.quadrics[corner as usize] += plane;
+                self.quadrics[corner as usize].add_plane(normal, area);
                 self.patches[corner as usize].area += area as f32;
             }
         }
@@ -125,16 +124,24 @@ impl<'a> Greedy<'a> {
     /// times those that come from it.
     fn find_borders(&mut self, vertex: u32, sides: &[(usize, [u32; 2])], weights: &[f64], uses: &mut [u64]) {
         const PLAIN: u64 = 1 << 32 | 1;
-        for &(_, [p, q]) in sides {
-            uses[p as usize] += 1;
-            uses[q as usize] += 1 << 32;
-        }
+        let count = |uses: &mut [u64]| {
+            for &(_, [p, q]) in sides {
+                uses[p as usize] += 1;
+                uses[q as usize] += 1 << 32;
+            }
+        };
+        count(uses);
         // Where every neighbour has one triangle in either direction there are no others.
-        if sides.iter().all(|&(_, [p, _])| uses[p as usize] == PLAIN) {
-            sides.iter().for_each(|&(_, [p, _])| uses[p as usize] = 0);
+        let mut others = 0;
+        for &(_, [p, _]) in sides {
+            others |= std::mem::take(&mut uses[p as usize]) ^ PLAIN;
+        }
+        if others == 0 {
             return;
         }
         let neighbours = || sides.iter().flat_map(|&(triangle, ends)| ends.map(|end| (triangle, end)));
+        neighbours().for_each(|(_, neighbour)| uses[neighbour as usize] = 0);
+        count(uses);
         for (triangle, neighbour) in neighbours() {
             let (to, from) = (uses[neighbour as usize] as u32, (uses[neighbour as usize] >> 32) as u32);
             self.marks[vertex as usize] |= if to != from { mark::ODD } else { 0 };
@@ -152,7 +159,7 @@ impl<'a> Greedy<'a> {
         let [a, b, c] = self.triangles[triangle].map(|v| self.place(v));
         let edge = self.place(neighbour) - self.place(vertex);
         let upright = (b - a).cross(c - a).cross(edge).normalize_or_zero();
-        self.quadrics[vertex as usize] += Quadric::plane(upright, weight * edge.length_squared());
+        self.quadrics[vertex as usize].add_plane(upright, weight * edge.length_squared());
     }
 }
 
