@@ -93,7 +93,8 @@ fn alike(looks: &[[u32; 2]], positions: usize) -> Classes {
 fn at_one_position(corners: impl ExactSizeIterator<Item = u32>, positions: usize) -> Classes {
     const NONE: u32 = u32::MAX;
     let mut class_at = vec![NONE; positions];
-    let mut classes = Classes { of: Vec::with_capacity(corners.len()), firsts: Vec::with_capacity(positions) };
+    let mut classes =
+        Classes { of: Vec::with_capacity(corners.len()), firsts: Vec::with_capacity(positions) };
     for (corner, position) in (0..).zip(corners) {
         let class = &mut class_at[position as usize];
         if *class == NONE {
