@@ -119,8 +119,20 @@ fn groups_of(old: &Mesh, facets: &[Facet]) -> Vec<crate::bake::Group> {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
     use crate::bake::Group;
+
+    proptest! {
+        /// Where all look the same.
+        #[test]
+        fn what_is_alike_is_at_one_position(positions in prop::collection::vec(0..9u32, 0..30)) {
+            let looks: Vec<[u32; 2]> = positions.iter().map(|&position| [position, 0]).collect();
+            let (found, expected) = (at_one_position(positions.into_iter(), 9), alike(&looks, 9));
+            prop_assert_eq!((found.of, found.firsts), (expected.of, expected.firsts));
+        }
+    }
 
     fn corner(vertex: u32, wedge: u32) -> Corner {
         Corner { vertex, wedge }

@@ -81,6 +81,15 @@ mod tests {
         assert!(may_go(Guard::new(0.0, 0.0), 0.0, 0.001, 1.0));
     }
 
+    #[test]
+    fn a_facing_is_the_normal_to_a_hundredth() {
+        for normal in [DVec3::NEG_X, DVec3::Z, DVec3::new(0.48, -0.6, 0.64), DVec3::new(-0.64, 0.48, -0.6)] {
+            let found = Facing::new(normal).normal() / 127.0;
+            assert!((found - normal).abs().max_element() < 0.01, "{normal}: {found}");
+        }
+        assert_eq!(Facing::new(DVec3::ZERO).normal(), DVec3::ZERO);
+    }
+
     /// Half a right angle at a time, seen from above, which is where the triangle faces.
     #[test]
     fn turns_do_not_add_up_to_more_than_a_right_angle() {
